@@ -36,30 +36,26 @@ contains
   subroutine adapt_options(options, error)
     type(command_line), intent(inout) :: options
     type(error_type), allocatable, intent(out) :: error
-    character(:), allocatable :: word
     if (num_ranks() == 1) return
     if (.not. is_first_rank()) options%is_quiet = .true.
     if (options%num_threads == 0) options%num_threads = max(1, omp_get_num_procs() &
                                                             /num_ranks_here())
-    word = ''
-    if (options%is_check) word = '--check'
-    if (options%is_material) word = '--material'
-    if (options%most_unsaved < huge(1)) word = '--save-joint-problems'
-    if (word == '') return
-    call raise(error, 'keyway: '//word//' works in one process only; start '// &
+    if (options%most_unsaved == huge(1)) return
+    call raise(error, 'keyway: --save-joint-problems works in one process only; start '// &
                'without mpiexec', deck_is_wrong)
   end subroutine adapt_options
 
-  !> Gives each rank its elements; refuses what several ranks cannot do. One rank has the solvers of
-  !> several where --solver asks for one.
+  !> Gives each rank its elements, for a run; refuses what several ranks cannot do. One rank has the
+  !> solvers of several where --solver asks for one.
   subroutine divide_problem(options, model, error)
     type(command_line), intent(in) :: options
     type(problem), intent(inout) :: model
     type(error_type), allocatable, intent(out) :: error
     if (num_ranks() == 1 .and. options%solver == choose_solver) return
     model%equation_solver = options%solver
+    if (options%is_material) return
     call refuse_undivided(model, error)
-    if (.not. allocated(error)) call divide_elements(model%mesh, error)
+    if (.not. allocated(error) .and. .not. options%is_check) call divide_elements(model%mesh, error)
     call share_error(error)
   end subroutine divide_problem
 

@@ -22,6 +22,7 @@ program keyway
   use run_material, only: run_tests
   use timer, only: wall_clock
   use umat_loader, only: keep_library
+  use user_routines, only: close_user_routines
   implicit none
 
   interface
@@ -85,9 +86,13 @@ program keyway
   if (.not. allocated(error)) call divide_problem(options, model, error)
   call end_on(error)
   if (options%is_check) then
-    call report_model(options, model, echo, costs, error)
+    if (is_first_rank()) call report_model(options, model, echo, costs, error)
   else if (options%is_material) then
-    call run_tests(model, options, echo, started_at, error)
+    if (is_first_rank()) then
+      call run_tests(model, options, echo, started_at, error)
+    else
+      call close_user_routines(model)
+    end if
   else if (.not. is_first_rank()) then
     call assist_run(model, options, costs, error)
   else

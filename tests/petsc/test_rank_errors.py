@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from block_decks import Pair
+from harness import ROOT
 from rank_decks import LAUNCH, MOTION, QUAKE, WEIGHT, BlockOnRock
 
 
@@ -44,28 +45,42 @@ def test_free_body(keyway, on_ranks, solver):
     assert run.json["status"] == "stopped"
 
 
-@pytest.mark.parametrize(
-    ("steps", "procedure", "words"),
-    [
-        (
-            "*STEP\n*DYNAMIC, SCHEME=REDUCED\n0.01, 0.1\n*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n",
-            "*DYNAMIC",
-            "reduced models",
-        ),
-        ("*STEP\n*STATIC\n*CONTROLS, PRECISION=SINGLE\n", "*STATIC", "PRECISION=SINGLE"),
-    ],
-)
-def test_steps_that_one_process_takes(on_ranks, steps, procedure, words):
+@pytest.mark.parametrize("option", [(), ("--check",)], ids=["run", "check"])
+def test_single_precision_is_for_one_process(on_ranks, option):
     """Refused with the place of the procedure and the way out, never run wrongly; the same program
     runs the deck in one process.
     """
-    deck = Pair().deck(QUAKE + steps + "*END STEP\n")
-    line = [text.split(",")[0].strip() for text in deck.splitlines()].index(procedure) + 1
-    run = on_ranks(2)(deck, code=2)
-    assert words in run.stderr
+    deck = Pair().deck("*STEP\n*STATIC\n*CONTROLS, PRECISION=SINGLE\n*END STEP\n")
+    line = deck.splitlines().index("*STATIC") + 1
+    run = on_ranks(2)(deck, *option, code=2)
+    assert "PRECISION=SINGLE" in run.stderr
     assert f"job.inp:{line}: " in run.stderr
     assert "without mpiexec" in run.stderr
     assert on_ranks(0)(deck).json["status"] == "finished"
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_check(on_ranks, ranks):
+    """One process checks: what it prints is that of the plain program, but for the times."""
+    deck = BlockOnRock().deck(WEIGHT)
+    plain, divided = on_ranks(0)(deck, "--check"), on_ranks(ranks)(deck, "--check")
+    cost = "Cost on this machine"
+    assert divided.stdout.split(cost)[0] == plain.stdout.split(cost)[0]
+    assert divided.stdout.count(f"{cost}, when it is idle, in one process") == 1
+
+
+def test_material(on_ranks):
+    """One process follows the paths of a material."""
+    deck = (ROOT / "input/umat/plastic_j2.inp").read_text(encoding="utf-8")
+    umat = ("--umat", str(ROOT / "input/umat/plastic_j2.f90"))
+    curves = []
+    for ranks in (0, 2):
+        program = on_ranks(ranks)
+        program(deck, "--material", *umat)
+        curves.append(sorted(program.folder.rglob("*_material_*.csv")))
+    plain, divided = curves
+    assert plain
+    assert [file.read_text() for file in divided] == [file.read_text() for file in plain]
 
 
 def test_failing_disk_ends_all(on_ranks, tmp_path):

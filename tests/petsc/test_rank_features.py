@@ -186,6 +186,23 @@ def test_joints_by_conjugate_gradients(keyway, on_ranks, tmp_path, ranks):
     assert size <= 1e-6, place
 
 
+@pytest.mark.parametrize(("ranks", "solver"), [(1, "DIRECT"), (2, "ITERATIVE"), (4, "DIRECT")])
+def test_reduced_model(keyway, on_ranks, tmp_path, ranks, solver):
+    """Modes and shapes of the dam from the solves of all ranks; the increments are those of each
+    rank. The motion of the nodes is expanded where the results of rank 0 need it. 1e-6 as between
+    numbers of threads (test_reduced_model): shapes amplify round-off.
+    """
+    deck = opened_dam(tmp_path).replace("*DYNAMIC,", "*DYNAMIC, REDUCED, MODES=60,")
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", solver)
+    expected, found = plain.csv("joint_JOINT1"), divided.csv("joint_JOINT1")
+    assert expected["opening"].max() > 0.05
+    for name in ("opening", "slip1", "slip2"):
+        assert found[name] == pytest.approx(expected[name], abs=1e-6 * abs(expected[name]).max())
+    (old,), (new,) = (run.json["accuracy"]["reduced"].values() for run in (plain, divided))
+    assert new["modes"] == old["modes"]
+    assert new["estimated_error"] == pytest.approx(old["estimated_error"], rel=1e-3)
+
+
 @pytest.mark.parametrize("feature", FEATURES)
 def test_feature_by_conjugate_gradients(keyway, on_ranks, feature):
     """As `test_feature`, where increments end at 1e-8, to 1e-6 of the largest value."""

@@ -360,7 +360,7 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     call self%followed%store(now)
-    if (.not. results%wants_motion(model, now)) return
+    if (.not. results%needs_motion(model, now)) return
     call results%costs%start('expand', 'structure', 'solver')
     call expand_motion(self%basis, self%system, self%solids%solver, model%amplitudes, when, now, &
                        error)

@@ -7,7 +7,8 @@ module increment_listener
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use dual_solutions, only: dual_solution
-  use ranks, only: add_over_ranks, is_first_rank, num_ranks, share_error
+  use ranks, only: add_over_ranks, is_first_rank, num_ranks, &
+                   number_of_first_rank, share_error
   use stop_signals, only: name_of_signal
   implicit none
   private
@@ -34,7 +35,8 @@ module increment_listener
     procedure :: wants_motion => always_wants_motion
     procedure(modes_found), deferred :: modes_found
     procedure :: weigh_modes
-    procedure, non_overridable :: report_increment, report_modes, stiffening_of_modes
+    procedure, non_overridable :: needs_motion, report_increment, report_modes, &
+      stiffening_of_modes
   end type listener
 
   abstract interface
@@ -69,6 +71,14 @@ contains
     type(state), intent(in) :: now
     wants = .true.
   end function always_wants_motion
+
+  !> The answer of `wants_motion`. The results are one rank's; all ranks have the answer of rank 0.
+  logical function needs_motion(self, model, now) result(needs)
+    class(listener), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    needs = number_of_first_rank(merge(1, 0, self%wants_motion(model, now))) == 1
+  end function needs_motion
 
   !> How much stiffer the mesh makes each mode; without results that know stresses: nothing.
   subroutine weigh_modes(self, model, shape, stiffening)

@@ -11,6 +11,7 @@ module run_forecast
   use node_dofs, only: num_directions
   use omp_lib, only: omp_get_max_threads
   use problem_definition, only: problem
+  use ranks, only: num_ranks
   use run_file_sizes, only: num_planned, size_of_files
   use run_ledger, only: ledger, ledger_part
   use solver_cholmod, only: cholmod_solver
@@ -79,7 +80,9 @@ contains
     delay = slowness(now)/slowness(best)
     counts%reading = counts%reading/delay
     time = time_of_run(model%steps, counts, slowness(best)) + file_time*files
-    text = 'Cost on this machine, when it is idle'// &
+    text = 'Cost on this machine, when it is idle'
+    if (num_ranks() > 1) text = text//', in one process'
+    text = text// &
            row('unknowns', as_text(nint(counts%unknowns)))// &
            row('entries of the factor', as_short_text(counts%entries))// &
            row('time', about(time, ' s'))// &

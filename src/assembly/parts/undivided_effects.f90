@@ -64,7 +64,6 @@ contains
     type(step), intent(in) :: plan
     character(:), allocatable :: effect
     effect = ''
-    if (plan%procedure%scheme == 'REDUCED') effect = 'reduced models (*DYNAMIC, SCHEME=REDUCED)'
     if (plan%controls%keeps_single) effect = 'factors in single precision (PRECISION=SINGLE)'
   end function effect_of_step
 end module undivided_effects
