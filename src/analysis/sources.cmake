@@ -57,7 +57,6 @@ set(sources
   state/motion_archive.f90
   state/state_archive.f90
   state/state_transfer.f90
-  state/step_control.f90
   steps/failure_remedy.f90
   steps/initial_state.f90
   steps/step_loop.f90

@@ -33,6 +33,7 @@ module read_deck
   use stage_plan, only: classes_of
   use keyword_catalogue, only: list_keywords
   use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
+  use keyword_spec, only: keyword, without_effect
   use keywords_elements, only: make_room_for_elements, trim_mesh
   use keywords_nodes, only: make_room_for_nodes
   use model_draft, only: draft
@@ -167,6 +168,7 @@ contains
       if (found == 0) cycle
       associate (spec => list%specs(found))
         call check_place(model, i, spec%place, is_in_step, is_in_material, faults, found)
+        if (.not. is_in_step) call check_step_follows(model, i, spec, faults, found)
         is_in_material = spec%name == 'MATERIAL' .or. is_in_material .and. spec%place == 'material'
         if (spec%name == 'STEP') is_in_step = .true.
         if (spec%name == 'END STEP') is_in_step = .false.
@@ -193,6 +195,24 @@ contains
       found = 0
     end if
   end subroutine check_place
+
+  !> A keyword that acts from the next step on must have one; else `found` is set to 0. Decks
+  !> without steps are those of materials.
+  subroutine check_step_follows(model, i, spec, faults, found)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: i !< card
+    type(keyword), intent(in) :: spec !< of its keyword
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(inout) :: found
+    integer :: k
+    if (spec%place /= 'anywhere' .or. spec%status == without_effect) return
+    associate (is_step => [(model%cards(k)%keyword == 'STEP', k=1, size(model%cards))])
+      if (any(is_step(i:)) .or. .not. any(is_step)) return
+    end associate
+    call model%cards(i)%fault(faults, 'no step follows the keyword', &
+                              'a place in a step or above the last *STEP')
+    found = 0
+  end subroutine check_step_follows
 
   !> Checks and handles the cards pass by pass.
   subroutine handle_cards(list, keyword_of_card, model, faults)

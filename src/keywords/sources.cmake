@@ -19,6 +19,7 @@ set(sources
   checks/check_nodes.f90
   checks/check_pressures.f90
   checks/check_repeats.f90
+  checks/check_shapes.f90
   checks/check_steps.f90
   checks/check_units.f90
   checks/check_unused.f90

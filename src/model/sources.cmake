@@ -20,5 +20,6 @@ set(sources
   steps/material_tests.f90
   steps/print_kinds.f90
   steps/stage_plan.f90
+  steps/step_control.f90
   steps/step_plan.f90
 )

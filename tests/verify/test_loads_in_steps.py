@@ -66,6 +66,16 @@ CASES = {
         (PRESS.format("", "01", "P6, 3."), PRESS.format("", "1", "P6, 4.")),
         (3.0 * RAMP, 3.0 + RAMP),
     ),
+    # What OP=NEW has cleared leaves nothing to the next load, of its own kind or of another one.
+    "a cleared pressure is given again": (
+        (PRESS.format("", "1", "P6, 3."), "*DLOAD, OP=NEW\n", PRESS.format("", "1", "P6, 5.")),
+        (3.0 * RAMP, 3.0 * RAMP[::-1] - 0.75, 5.0 * RAMP),
+    ),
+    "another kind of load after two cleared ones": (
+        (PRESS.format("", "1", "P6, 3.") + "2, P6, 4.\n", "*DLOAD, OP=NEW\n1, P6, 1.\n",
+         "*DSLOAD\nSIDE, P, 5.\n"),
+        (7.0 * RAMP, 7.0 - 6.0 * RAMP, 1.0 + 5.0 * RAMP),
+    ),
 }  # fmt: skip
 
 
@@ -76,6 +86,7 @@ def column(steps: tuple) -> str:
     mesh.node_sets["TOP"] = number[:, :, 2].ravel()
     mesh.node_sets["CORNER"] = number[:1, :1, 2].ravel()
     cards = elastic(1e6, 0.2) + "*BOUNDARY\nBASE, 1, 3\n" + HISTORIES
+    cards += "*SURFACE, NAME=SIDE\n2, S6\n"
     cards += "*ELSET, ELSET=ALL_BRICKS\n1, 2\n*ELSET, ELSET=LOW\n1\n"
     for loads in steps:
         between, inside = loads if isinstance(loads, tuple) else ("", loads)

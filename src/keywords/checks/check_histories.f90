@@ -9,6 +9,7 @@ module check_histories
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: find_amplitude
+  use step_control, only: increment_control, start_control
   use write_text, only: as_text
   implicit none
   private
@@ -41,9 +42,8 @@ contains
       call find_amplitude(model%cards(i), model, faults, a)
       if (a == 0) cycle
       call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
-      if (is_keyword(model%cards(i), 'BASE MOTION')) then
-        call warn_of_increments(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
-      else
+      call warn_of_increments(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
+      if (.not. is_keyword(model%cards(i), 'BASE MOTION')) then
         call warn_of_unit(model%cards(i), model, a, faults)
       end if
     end do
@@ -93,30 +93,39 @@ contains
     span(2) = span(1) + model%problem%steps(s)%duration
   end function span_of_step
 
-  !> A peak between the increments does not act.
+  !> A peak between the increments does not act. Increments are taken to grow as they do where each
+  !> converges quickly.
   subroutine warn_of_increments(this, model, s, record, faults)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
     type(amplitude), intent(in) :: record
     type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: span(2), peak, seen, t
-    integer :: i, num
+    type(increment_control) :: control
+    character(:), allocatable :: sizes
+    real(rk) :: span(2), peak, seen, t, smallest, largest
     span = span_of_step(model, s, record)
     peak = maxval(abs(record%value), mask=record%time >= span(1) .and. record%time <= span(2))
-    associate (dt => model%problem%steps(s)%first_increment)
-      if ((span(2) - span(1))/dt > real(most_samples, rk)) return
-      num = int((span(2) - span(1))/dt*(1.0_rk + round_off))
-      seen = 0.0_rk
-      do i = 0, num
-        t = span(1) + i*dt
-        seen = max(seen, abs(amplitude_at(record, t)))
-      end do
-      if (seen >= seen_share*peak) return
-      call this%warn(faults, 'increments of '//as_text(dt)//" s miss the peak of the record '"// &
-                     this%text('AMPLITUDE')//"': "//as_text(seen)//' at their ends, '// &
-                     as_text(peak)//' in the record', 'increments of a few points of the record')
+    associate (plan => model%problem%steps(s))
+      if (plan%duration/plan%first_increment > real(most_samples, rk)) return
+      call start_control(plan, plan%procedure%has_inertia, control)
+      smallest = plan%first_increment
     end associate
+    t = 0.0_rk
+    largest = 0.0_rk
+    seen = abs(amplitude_at(record, span(1)))
+    do while (t < control%duration*(1.0_rk - round_off))
+      largest = max(largest, control%next_size(t))
+      t = t + control%next_size(t)
+      seen = max(seen, abs(amplitude_at(record, span(1) + t)))
+      call control%accept(1)
+    end do
+    if (seen >= seen_share*peak) return
+    sizes = as_text(smallest)
+    if (largest > smallest*(1.0_rk + round_off)) sizes = sizes//' to '//as_text(largest)
+    call this%warn(faults, 'increments of '//sizes//" s miss the peak of the history '"// &
+                   this%text('AMPLITUDE')//"': "//as_text(seen)//' at their ends, '// &
+                   as_text(peak)//' in the history', 'increments that end near the peak')
   end subroutine warn_of_increments
 
   !> The values of a record of acceleration were turned into m/s2.

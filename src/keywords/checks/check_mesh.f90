@@ -1,5 +1,6 @@
-!> Warns of elements on the same nodes, and of C3D8 in a deck that was written for Abaqus.
+!> Warns of elements on the same nodes, of doubtful shapes, and of C3D8 in a deck for Abaqus.
 module check_mesh
+  use check_shapes, only: warn_of_shapes
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
   use model_draft, only: draft
@@ -16,6 +17,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     call warn_of_twins(model, faults)
+    call warn_of_shapes(model, faults)
     call warn_of_c3d8(model, faults)
   end subroutine warn_of_mesh
 

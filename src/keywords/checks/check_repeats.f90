@@ -52,10 +52,35 @@ contains
                   old%word('SURFACE') == new%word('SURFACE')
       if (is_repeat) call new%warn(faults, "reservoir '"//old%text('NAME')//"' wets the "// &
                                    'surface in this step already: the water of both acts')
+    case ('CLOAD', 'DLOAD', 'DSLOAD')
+      is_repeat = are_equal(old, new)
+      if (is_repeat) call new%warn(faults, 'the card stands in this step already, word for '// &
+                                   'word: its loads act twice')
     case default
       continue ! the keyword has no second value, or a warning of its own
     end select
   end function compare
+
+  !> Whether two cards of loads have the same parameters and data. Weight that acts twice has a
+  !> warning of its own.
+  logical function are_equal(old, new)
+    type(card), intent(in) :: old, new
+    integer :: i, j
+    are_equal = size(old%parameters) == size(new%parameters) .and. old%num_lines == new%num_lines
+    do i = 1, size(new%parameters)
+      associate (name => new%parameters(i)%name)
+        if (are_equal) are_equal = old%has(name)
+        if (are_equal) are_equal = old%word(name) == new%word(name)
+      end associate
+    end do
+    do i = 1, new%num_lines
+      if (are_equal) are_equal = old%num_fields(i) == new%num_fields(i)
+      do j = 1, new%num_fields(i)
+        if (.not. are_equal) return
+        are_equal = old%word_at(i, j) == new%word_at(i, j) .and. new%word_at(i, j) /= 'GRAV'
+      end do
+    end do
+  end function are_equal
 
   subroutine compare_controls(old, new, faults, is_repeat)
     type(card), intent(in) :: old, new

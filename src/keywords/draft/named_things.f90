@@ -88,6 +88,11 @@ contains
       if (found == 0) then
         call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
                            ' does not exist', article//' '//kind//' of the model')
+      else if (this%keyword /= 'NSET' .and. this%keyword /= 'ELSET' .and. &
+               sets%find(this%word_at(line, field)) > 0) then
+        call this%warn_at(faults, line, field, "'"//this%text_at(line, field)//"' is "//kind// &
+                          ' '//this%text_at(line, field)//' here, not the '//kind// &
+                          ' set of this name', 'a name with a letter for the set')
       end if
     else
       found = sets%find(this%word_at(line, field))

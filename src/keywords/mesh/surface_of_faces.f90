@@ -59,8 +59,8 @@ contains
     type(face_table), intent(out) :: table
     integer :: i, number
     associate (mesh => model%problem%mesh)
-      call find_exterior(mesh, pack([(i, i=1, mesh%num_elements)], is_solid(mesh%element_type)), &
-                         skin)
+      call find_exterior(mesh, pack([(i, i=1, mesh%num_elements)], &
+                                    is_solid(mesh%element_type(:mesh%num_elements))), skin)
       call open_table(mesh%num_nodes, size(skin%element), table)
       do i = 1, size(skin%element)
         call insert_face(table, face_nodes(mesh, skin%element(i), skin%face(i)), number)

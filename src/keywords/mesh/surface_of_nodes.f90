@@ -27,8 +27,8 @@ contains
     num_before = faults%num_errors
     call mark_nodes(this, model, faults, is_given)
     associate (mesh => model%problem%mesh)
-      call find_exterior(mesh, pack([(i, i=1, mesh%num_elements)], is_solid(mesh%element_type)), &
-                         skin)
+      call find_exterior(mesh, pack([(i, i=1, mesh%num_elements)], &
+                                    is_solid(mesh%element_type(:mesh%num_elements))), skin)
       allocate (is_in(size(skin%element)))
       allocate (is_spanned(size(is_given)), source=.false.)
       do i = 1, size(is_in)

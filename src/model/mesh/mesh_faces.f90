@@ -129,9 +129,10 @@ contains
     integer :: e, face, number, twin
 
     call open_table(mesh%num_nodes, 6*size(elements), table)
-    allocate (is_outer(6*size(elements)))
+    allocate (is_outer(6*size(elements)), source=.false.)
     allocate (owner(6*size(elements)), face_of(6*size(elements)))
     do e = 1, size(elements)
+      if (any(mesh%nodes(:, elements(e)) == 0)) cycle ! an element of a faulty deck
       do face = 1, 6
         twin = find_face(table, face_nodes(mesh, elements(e), face))
         call insert_face(table, face_nodes(mesh, elements(e), face), number)

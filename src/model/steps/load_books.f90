@@ -93,6 +93,7 @@ contains
       call move_alloc(longer, self%entries)
     end if
     self%num_entries = self%num_entries + 1
+    self%entries(self%num_entries) = active_load() ! the place may have been that of a cleared load
     associate (new => self%entries(self%num_entries))
       new%load = load
       new%family = family
