@@ -58,6 +58,22 @@ def test_equals_the_joint(keyway, meshes, gap):
     assert np.abs(ours - other).max() <= 1e-12 * np.abs(other).max()
 
 
+@pytest.mark.parametrize("rounding", [1e-9, -1e-9])
+def test_rounding_of_a_mesh_is_no_gap(keyway, rounding):
+    """Faces that a mesher left 1 nm apart touch: a joint with CLEARANCE=MEASURED keeps its tensile
+    strength, as one without. The tolerance is that nanometre over the displacement."""
+    strong = ", TENSILE STRENGTH=1e8"
+    states = []
+    for options, lift in ((", CLEARANCE=MEASURED", rounding), ("", 0.0)):
+        joint = contact(JOINT.format(strong, options), LINES, lift=lift, **TWO_TO_THREE)
+        run = keyway(joint.deck(pressed(-1e-5)), name=f"joint{len(states)}")
+        states.append(joint_state(run, name="CONTACT1"))
+    measured, touching = states
+    assert touching["opening"].min() > 1e-8
+    assert measured["opening"] == pytest.approx(touching["opening"], rel=1e-4)
+    assert measured["force"] == pytest.approx(touching["force"], rel=1e-4, abs=1e-3)
+
+
 @pytest.mark.parametrize("slave_first", [True, False])
 def test_hard_contact_has_the_stiffness_of_its_elements(keyway, slave_first):
     """KN = 50 E/h of the softer side: here 50 E/1 m of the block, the base is 0.5 m thick.

@@ -111,6 +111,24 @@ def test_a_support_that_goes_fades(keyway):
     assert energy["numerical"] == pytest.approx(0.0, abs=1e-9 * energy["external"].max())
 
 
+def test_a_support_of_a_motion_goes_and_a_force_comes(keyway):
+    """The top of a bar is moved in a dynamic step. In the static step after it the support goes,
+    and a force acts from the start: it stands beside what is left of the reaction."""
+    mesh, number = box_mesh((1, 1, 1), stretched((1.0, 1.0, 1.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
+    cards = elastic(1000.0, 0.0, 1.0) + "*AMPLITUDE, NAME=ONE\n0., 1., 1., 1.\n"
+    cards += "*BOUNDARY\nBASE, 1, 3\nTOP, 1, 3\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.03\n*BOUNDARY\nTOP, 3, 3, 0.01\n"
+    cards += "*NODE PRINT, NSET=TOP\nU\n*END STEP\n"
+    cards += "*STEP\n*STATIC, DIRECT\n0.25, 1.\n*BOUNDARY, OP=NEW\nBASE, 1, 3\nTOP, 1, 2\n"
+    cards += "*CLOAD, AMPLITUDE=ONE\nTOP, 3, 25.\n*END STEP\n"
+    table = keyway(brick_deck(mesh, "C3D8", cards)).csv("node_TOP")
+    now = table["step"] == 2
+    share = table["increment"][now] / 4.0
+    # 100 N over E A / L = 1000 N/m; the reaction was 10 N. 1e-12 is round-off.
+    assert table["U3"][now] == pytest.approx(0.1 + 0.01 * (1.0 - share), rel=1e-12)
+
+
 def shaken_bar(parts: list[float], base: str, more: str = "") -> str:
     """A bar of two bricks on a base with these cards in each step; the base is in direction 3."""
     mesh, number = box_mesh((1, 1, 2), stretched((1.0, 1.0, 4.0)))

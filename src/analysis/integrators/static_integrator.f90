@@ -17,7 +17,7 @@ module static_integrator
   use motion_goes_on, only: step_before
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: dam_system, build_structure, build_loads, build_origins
-  use step_loads, only: step_time, external_force
+  use step_loads, only: step_time, external_force, force_before
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
   use integrator_type, only: integrator
@@ -103,9 +103,16 @@ contains
         own%release = -own%balanced
       else if (frees_supports(plan, now)) then
         own%release = forces_of_freed(self%system, plan, now)
-        ! After a dynamic step the reaction contains inertia and damping, which do not act any more.
-        if (follows_motion(model, now%step)) own%release = merge(-own%balanced, 0.0_rk, &
-                                                                 abs(own%release) > 0.0_rk)
+        ! After a dynamic step the reaction contains inertia and damping, which do not act any more:
+        ! without them it balances the loads of that step.
+        if (follows_motion(model, now%step)) then
+          where (abs(own%release) > 0.0_rk)
+            own%release = own%internal + own%contact &
+                          - force_before(self%system%groups, size(own%external))
+          elsewhere
+            own%release = 0.0_rk
+          end where
+        end if
       else
         return
       end if

@@ -40,7 +40,7 @@ contains
     end do
   end subroutine warn_of_bases
 
-  !> Nodes of joint elements that no solid has.
+  !> Nodes of joint elements that no solid has, nor a quadrilateral that springs couple to one.
   subroutine find_bare(model, is_bare)
     type(draft), intent(in) :: model
     logical, intent(out) :: is_bare(:) !< (nodes)
@@ -53,7 +53,9 @@ contains
         do k = 1, size(mesh%nodes, 1)
           if (mesh%nodes(k, e) == 0) cycle
           if (mesh%element_type(e) == 'JOINT8') is_bare(mesh%nodes(k, e)) = .true.
-          if (mesh%material_of_element(e) > 0) has_solid(mesh%nodes(k, e)) = .true.
+          if (mesh%material_of_element(e) > 0 .or. mesh%element_type(e) == 'IFACE4') then
+            has_solid(mesh%nodes(k, e)) = .true.
+          end if
         end do
       end do
     end associate

@@ -1,4 +1,4 @@
-!> The gaps of a *CONTACT PAIR at the start.
+!> The gaps of a *CONTACT PAIR, and of a *JOINT with CLEARANCE=MEASURED, at the start.
 module contact_clearance
   use joint_points, only: dam_joint
   use kinds, only: rk

@@ -173,7 +173,7 @@ contains
       else
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
-      if (request%contact_law > 0) call set_clearance(request, mesh%x, new)
+      if (request%is_measured) call set_clearance(request, mesh%x, new)
       if (new%num_points == 0 .and. segments%num_segments > 0) then
         call place%fault_at(faults, line, 1, 'the joint has no points: its surfaces share '// &
                             'their nodes', 'faces with nodes of their own')

@@ -114,7 +114,8 @@ contains
                     choices='NODES | GAUSS'), &
               field('CLEARANCE', kind_choice, 'initial distance of the surfaces: NONE, only '// &
                     'the GAP of the law; MEASURED, the distance in '// &
-                    'the mesh as well', &
+                    'the mesh as well (up to 1e-6 of a facet it is rounding and counts as '// &
+                    'zero)', &
                     default='NONE', choices='NONE | MEASURED')])
     allocate (spec%columns, source=[ &
               field('slave', kind_word, 'slave surface, as a rule the finer one', &
