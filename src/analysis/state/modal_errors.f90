@@ -25,6 +25,7 @@ module modal_errors
     !> (modes, modes) sum of w w^T, w the displacements of an increment; with joints only
     real(rk), allocatable :: square(:, :)
     real(rk), allocatable :: product(:) !< (modes) sum of w times the increment of the opening
+    real(rk) :: changes = 0.0_rk !< sum of the squares of the increments of the opening
     real(rk) :: opening = 0.0_rk !< largest so far [m]
     !> Sums over the modes and over the increments with open joints: squares of the forces that open
     !> joints have lost, over the circular frequencies; and of the displacements times these
@@ -53,6 +54,7 @@ contains
     call file%put('mesh_at_most', timing%mesh_at_most)
     call file%put('square', timing%square)
     call file%put('product', timing%product)
+    call file%put('changes', timing%changes)
     call file%put('at_most', timing%at_most)
     call file%put('opening', timing%opening)
     call file%put('lost', timing%lost)
@@ -78,6 +80,7 @@ contains
     call file%get('mesh_at_most', timing%mesh_at_most)
     call file%get('square', timing%square)
     call file%get('product', timing%product)
+    call file%get('changes', timing%changes)
     call file%get('at_most', timing%at_most)
     call file%get('opening', timing%opening)
     call file%get('lost', timing%lost)

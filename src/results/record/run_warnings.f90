@@ -44,14 +44,19 @@ contains
     end associate
   end subroutine check_reduction
 
-  !> Warns when points of joints slide in a step that follows an accuracy: an error of a slip stays,
-  !> and the estimate does not see it.
+  !> Warns when points of joints slide or hit each other in a step that follows an accuracy: an error
+  !> of a slip stays, an impact decides how a body goes on, and the estimate sees neither.
   subroutine check_sliding(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     associate (plan => model%steps(now%step))
       if (.not. plan%follows_accuracy()) return
+      if (now%energy%shows_impacts()) then
+        call self%warn_once('step '//plan%name//': impacts of joints take much of the energy '// &
+                            '(numerical, in the energy balance), and ACCURACY does not bound '// &
+                            'their error; take a smaller largest increment')
+      end if
       if (.not. now%energy%shows_sliding()) return
       call self%warn_once('step '//plan%name//': points of joints slide, and ACCURACY does not '// &
                           'bound the error of their slips; compare with increments of half the '// &

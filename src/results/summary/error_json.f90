@@ -42,7 +42,11 @@ contains
         if (.not. follows_error(part)) cycle
         call json%open_object(model%steps(part%step)%name)
         call json%put_real(model%steps(part%step)%controls%accuracy, 'wanted')
-        call json%put_real(part%accuracy%relative(), 'estimated_error')
+        if (part%energy%shows_impacts()) then
+          call json%put_text('impacts of joints take much of the energy', 'not_known')
+        else
+          call json%put_real(part%accuracy%relative(), 'estimated_error')
+        end if
         call json%open_array('sizes')
         do k = 1, size(part%sizes)
           call json%open_object()
@@ -94,7 +98,7 @@ contains
     if (joint /= '') call json%put_text(joint, 'joint')
     if (found%total(value) >= 0.0_rk) call json%put_real(found%total(value), 'error')
     if (found%is_stray(value)) then
-      call json%put_text('time, mesh: a body rocks or slides', 'not_known')
+      call json%put_text('time, mesh: bodies rock, slide or hit each other', 'not_known')
     end if
     if (found%has_time(value)) call json%put_real(found%time, 'time')
     if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')

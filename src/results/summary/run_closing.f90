@@ -187,6 +187,12 @@ contains
           if (n > 1) text = text//','
           text = text//' '//as_text(part%of_size(k))//' of '//as_short_text(part%sizes(k))//' s'
         end do
+        if (part%energy%shows_impacts()) then
+          text = text//'; error in time not known: impacts of joints take '// &
+                 as_short_text(100.0_rk*part%energy%numerical/part%energy%largest)// &
+                 ' % of the energy'
+          cycle
+        end if
         text = text//'; estimated error in time '// &
                as_short_text(100.0_rk*part%accuracy%relative())//' % of the largest displacement'
         if (part%accuracy%relative() > model%steps(part%step)%controls%accuracy) then
