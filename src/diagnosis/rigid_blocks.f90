@@ -5,6 +5,7 @@
 !> the farthest node as radius, so that all are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
+  use dam_mesh, only: node_tie
   use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
@@ -12,7 +13,7 @@ module rigid_blocks
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: block_set, find_blocks, jump_rows, add_supports
+  public :: block_set, find_blocks, find_tied_parts, jump_rows, add_supports, add_tie
 
   type :: block_set
     integer :: num_blocks = 0
@@ -29,20 +30,51 @@ contains
     type(problem), intent(in) :: model
     type(block_set), intent(out) :: blocks
     integer, allocatable :: parent(:)
+    type(row_table) :: bonds
+    integer :: i
     allocate (parent(model%mesh%num_nodes), source=0)
-    call unite_elements(model, parent)
-    call unite_bonds(model, parent)
+    call unite_elements(model, .false., parent)
+    do i = 1, size(model%guests)
+      call model%guests(i)%item%add_bonds(bonds)
+    end do
+    call unite_bonds(bonds, parent)
     call number_blocks(model, parent, blocks)
     call measure_blocks(model%mesh%x, blocks)
   end subroutine find_blocks
 
-  !> Unites the nodes of each element except joints.
-  subroutine unite_elements(model, parent)
+  !> Finds the parts of a model that ties and equations alone connect: joints and springs count as
+  !> rigid.
+  subroutine find_tied_parts(model, parts)
     type(problem), intent(in) :: model
+    type(block_set), intent(out) :: parts
+    integer, allocatable :: parent(:)
+    type(node_tie), allocatable :: ties(:)
+    type(row_table) :: bonds
+    integer :: i
+    allocate (parent(model%mesh%num_nodes), source=0)
+    call unite_elements(model, .true., parent)
+    do i = 1, size(model%joints)
+      call model%joints(i)%add_bonds(bonds)
+    end do
+    do i = 1, size(model%guests)
+      allocate (ties(0))
+      call model%guests(i)%item%add_ties(ties)
+      if (size(ties) == 0) call model%guests(i)%item%add_bonds(bonds)
+      deallocate (ties)
+    end do
+    call unite_bonds(bonds, parent)
+    call number_blocks(model, parent, parts)
+    call measure_blocks(model%mesh%x, parts)
+  end subroutine find_tied_parts
+
+  !> Unites the nodes of each element.
+  subroutine unite_elements(model, with_joints, parent)
+    type(problem), intent(in) :: model
+    logical, intent(in) :: with_joints !< also the faces of a joint element
     integer, intent(inout) :: parent(:)
     integer :: e, a, node
     do e = 1, model%mesh%num_elements
-      if (model%mesh%element_type(e) == 'JOINT8') cycle
+      if (model%mesh%element_type(e) == 'JOINT8' .and. .not. with_joints) cycle
       do a = 1, count(model%mesh%nodes(:, e) > 0)
         node = model%mesh%nodes(a, e)
         if (parent(node) == 0) parent(node) = node
@@ -51,19 +83,15 @@ contains
     end do
   end subroutine unite_elements
 
-  !> Unites the nodes that guests other than joints connect.
-  subroutine unite_bonds(model, parent)
-    type(problem), intent(in) :: model
+  !> Unites the nodes of each bond.
+  subroutine unite_bonds(bonds, parent)
+    type(row_table), intent(inout) :: bonds
     integer, intent(inout) :: parent(:)
-    type(row_table) :: cells
     integer :: i, k
-    do i = 1, size(model%guests)
-      call model%guests(i)%item%add_bonds(cells)
-    end do
-    call cells%finish()
-    do i = 1, cells%num_rows()
-      do k = cells%first(i) + 1, cells%first(i + 1) - 1
-        call unite_nodes(cells%item(cells%first(i)), cells%item(k))
+    call bonds%finish()
+    do i = 1, bonds%num_rows()
+      do k = bonds%first(i) + 1, bonds%first(i + 1) - 1
+        call unite_nodes(bonds%item(bonds%first(i)), bonds%item(k))
       end do
     end do
   contains
@@ -184,4 +212,43 @@ contains
       end associate
     end do
   end subroutine add_supports
+
+  !> Adds the rows of a tie or of equations to the matrix sum row^T row: the displacement of each node
+  !> that follows less those that it follows.
+  subroutine add_tie(parts, x, tie, matrix)
+    type(block_set), intent(in) :: parts
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(node_tie), intent(in) :: tie
+    real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
+    real(rk) :: row(6, parts%num_blocks)
+    integer, allocatable :: used(:)
+    integer :: i, k, d, item_direction
+    do i = 1, size(tie%node)
+      do d = 1, 3
+        if (.not. tie%is_tied(d, i)) cycle
+        row = 0.0_rk
+        call add_node_motion(parts, x, tie%node(i), along(d, 1.0_rk), row)
+        do k = tie%first(i), tie%first(i + 1) - 1
+          item_direction = d
+          if (allocated(tie%item_direction)) item_direction = tie%item_direction(k)
+          call add_node_motion(parts, x, tie%item(k), along(item_direction, -tie%weight(k)), row)
+        end do
+        associate (flat => reshape(row, [size(row)]))
+          used = pack([(k, k=1, size(flat))], abs(flat) > 0.0_rk)
+          do k = 1, size(used)
+            matrix(used, used(k)) = matrix(used, used(k)) + flat(used)*flat(used(k))
+          end do
+        end associate
+      end do
+    end do
+  end subroutine add_tie
+
+  !> A vector along an axis.
+  pure function along(axis, length) result(vector)
+    integer, intent(in) :: axis
+    real(rk), intent(in) :: length
+    real(rk) :: vector(3)
+    vector = 0.0_rk
+    vector(axis) = length
+  end function along
 end module rigid_blocks

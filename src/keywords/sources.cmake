@@ -103,4 +103,5 @@ set(sources
   verify_blocks.f90
   verify_model.f90
   verify_reduced.f90
+  verify_ties.f90
 )

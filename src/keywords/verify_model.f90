@@ -13,6 +13,7 @@ module verify_model
   use sorted_lists, only: contains_position
   use verify_blocks, only: verify_free_blocks
   use verify_reduced, only: verify_reduced_steps
+  use verify_ties, only: verify_tied_parts
   use write_text, only: as_text
   implicit none
   private
@@ -31,6 +32,7 @@ contains
     call verify_reduced_steps(model, faults)
     if (.not. faults%has_errors()) call verify_weight(model, faults)
     if (.not. faults%has_errors()) call verify_supports(model, faults)
+    if (.not. faults%has_errors()) call verify_tied_parts(model, faults)
     if (.not. faults%has_errors()) call verify_free_blocks(model, faults)
   end subroutine verify
 

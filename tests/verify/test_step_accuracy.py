@@ -168,8 +168,8 @@ def test_killed_and_continued(program_path: Path, tmp_path: Path):
 
 
 def test_an_impact_has_no_estimate(keyway):
-    """A block falls 10 mm onto a joint. Increments that have grown in its free flight stop it there;
-    0.4 % of the largest displacement were said, and the rebound was missing."""
+    """A block falls 10 mm onto a joint. Increments that have grown in its free flight stop it
+    there; 0.4 % of the largest displacement were said, and the rebound was missing."""
     block = Block(size=(1.0, 1.0, 1.0), young=2e11, law="KN=1e10, FRICTION=0.3, GAP=0.01")
     step = "*STEP, INC=1000000\n*DYNAMIC\n0.0005, 0.2\n*CONTROLS, ACCURACY=0.01\n"
     run = keyway(block.deck(f"{step}{WEIGHT}*END STEP\n"))
