@@ -213,8 +213,8 @@ contains
     end do
   end subroutine add_supports
 
-  !> Adds the rows of a tie or of equations to the matrix sum row^T row: the displacement of each node
-  !> that follows less those that it follows.
+  !> Adds the rows of a tie or of equations to the matrix sum row^T row: the displacement of each
+  !> node that follows less those that it follows.
   subroutine add_tie(parts, x, tie, matrix)
     type(block_set), intent(in) :: parts
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]

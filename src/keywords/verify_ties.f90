@@ -1,5 +1,5 @@
-!> Errors where ties and equations do not hold a part of the model, as a tie along one line: the part
-!> can turn about it. The check of supports takes tied parts for one rigid body.
+!> Errors where ties and equations do not hold a part of the model, as a tie along one line: the
+!> part can turn about it. The check of supports takes tied parts for one rigid body.
 module verify_ties
   use block_motion, only: block_name, freedom_text
   use dam_mesh, only: node_tie

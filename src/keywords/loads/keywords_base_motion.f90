@@ -24,7 +24,8 @@ contains
     spec%place = 'step'
     spec%meaning = 'Acceleration of the base, the same everywhere. Results are relative to the '// &
                    'base; the added mass of the water is included. The motion continues in '// &
-                   'later steps: a history over step time keeps its last value. A second '// &
+                   'later dynamic steps: a history over step time keeps its last value. In '// &
+                   'a *STATIC step it does not act. A second '// &
                    'motion in one direction adds in the same step, and replaces in a later one.'
     spec%example = '*BASE MOTION, DOF=1, AMPLITUDE=QUAKE'
     spec%most_lines = 0
