@@ -125,3 +125,13 @@ def test_a_temperature_given_again_stays(keyway):
     mine = table["node"] == first + 1
     assert table["TEMP"][mine] == pytest.approx([20.0, 7.0, 7.0])
     assert table["TEMP"][~mine] == pytest.approx(np.repeat([20.0, 30.0, 40.0], 7))
+
+
+@pytest.mark.parametrize(("push", "is_large"), [(1e3, False), (1e6, True)])
+def test_displacements_larger_than_the_model(keyway, push, is_large):
+    """E is 1e6 Pa; the model is 2.4 m across."""
+    run = keyway(column((PUSH.format("", push),)))
+    largest = run.json["accuracy"]["estimates"]["displacement"]["value"]
+    assert (largest > np.sqrt(6.0)) == is_large
+    warned = [text for text in run.json["warnings"] if "larger than the model" in text]
+    assert len(warned) == is_large

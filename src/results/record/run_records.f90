@@ -40,6 +40,7 @@ module run_records
     type(extremes_by_face) :: displacement !< length of the vector, relative to the base [m]
     type(space_error) :: space !< error that the mesh leaves
     type(path_error) :: path !< of the laws of solids within increments, as the state has it
+    real(rk) :: extent = 0.0_rk !< diagonal of the box around the mesh [m]
     type(goal_error) :: goals(2) !< errors of the largest displacement and of the largest opening
     type(envelope), allocatable :: envelopes(:) !< of all steps so far
     integer, allocatable :: active(:) !< envelopes of the present step
@@ -83,6 +84,7 @@ contains
     call find_dam_faces(model, self%skin)
     allocate (self%joints(size(model%joints)), self%envelopes(0), self%active(0))
     allocate (self%warnings(0), self%files(0))
+    self%extent = norm2(maxval(model%mesh%x, dim=2) - minval(model%mesh%x, dim=2))
     do j = 1, size(model%joints)
       call open_joint_record(model%joints(j), self%skin, self%joints(j))
     end do
@@ -124,13 +126,13 @@ contains
     call self%stresses%invalidate()
     self%path = now%path
     if (self%damage%is_present) call note_damage(model, now, self%damage)
-    call self%warn_of_increment(model, now)
     ! norm2, which guards against overflow, takes ten times as long.
     associate (u => now%u)
       call note_values(self%displacement, sqrt(u(1, :)**2 + u(2, :)**2 + u(3, :)**2), &
                        model%mesh%x, self%skin%is_upstream, self%skin%is_downstream, &
                        now%total_time, wants_smallest=.false.)
     end associate
+    call self%warn_of_increment(model, now)
     do j = 1, size(model%joints)
       call note_joint(self%joints(j), model%joints(j), now%joints(j), now%total_time)
     end do

@@ -27,9 +27,25 @@ contains
                           'RECOVERY=SIGN prevented equilibrium in an increment; the stiffness '// &
                           'recovery was fixed at its value from the start of the increment')
     end if
+    call check_size(self, model, now)
     call check_reduction(self, model, now)
     call check_sliding(self, model, now)
   end subroutine warn_of_increment
+
+  !> Warns when displacements exceed the size of the model: displacements are small here, so a part is
+  !> loose or an input is wrong.
+  subroutine check_size(self, model, now)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    associate (largest => self%displacement%at(1))
+      if (.not. largest%is_found) return
+      if (largest%value <= self%extent) return
+      call self%warn_once('step '//model%steps(now%step)%name//': a displacement is larger than '// &
+                          'the model, and the program takes displacements as small: look for '// &
+                          'parts that are not held, and for wrong units of loads or stiffness')
+    end associate
+  end subroutine check_size
 
   !> Warns when a reduced model does not meet the accuracy of its step.
   subroutine check_reduction(self, model, now)
