@@ -38,10 +38,10 @@ contains
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    associate (largest => self%displacement%at(1))
+    associate (largest => self%displacement%at(1), plan => model%steps(now%step))
       if (.not. largest%is_found) return
       if (largest%value <= self%extent) return
-      call self%warn_once('step '//model%steps(now%step)%name//': a displacement is larger than '// &
+      call self%warn_once('step '//plan%name//': a displacement is larger than '// &
                           'the model, and the program takes displacements as small: look for '// &
                           'parts that are not held, and for wrong units of loads or stiffness')
     end associate
