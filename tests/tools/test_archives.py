@@ -88,7 +88,7 @@ TYPES = (
         ),
     ),
     of_state("last_matrix", STATE, "matrix"),
-    of_state("increment_control", "src/analysis/state/step_control.f90", "control"),
+    of_state("increment_control", "src/model/steps/step_control.f90", "control"),
     of_state(
         "joint_state",
         "src/joints/law/joint_history.f90",
@@ -111,6 +111,7 @@ TYPES = (
         skin="of the model",
         fields="the same for all runs",
         path="of the state",
+        extent="of the mesh, found when the record opens",
     ),
     of_record(
         "joint_record",

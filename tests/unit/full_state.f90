@@ -136,6 +136,7 @@ contains
     call fill(timing%at_most, n)
     call fill(timing%opening, n)
     call fill(timing%lost, n)
+    call fill(timing%changes, n)
     call fill(timing%held, n)
   end subroutine fill_timing
 

@@ -149,6 +149,7 @@ contains
     call compare(log, what//'at_most', a%at_most, b%at_most)
     call compare(log, what//'opening', a%opening, b%opening)
     call compare(log, what//'lost', a%lost, b%lost)
+    call compare(log, what//'changes', a%changes, b%changes)
     call compare(log, what//'held', a%held, b%held)
   end subroutine compare_timing
 

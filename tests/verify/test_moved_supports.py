@@ -111,22 +111,42 @@ def test_a_support_that_goes_fades(keyway):
     assert energy["numerical"] == pytest.approx(0.0, abs=1e-9 * energy["external"].max())
 
 
-def test_a_support_of_a_motion_goes_and_a_force_comes(keyway):
-    """The top of a bar is moved in a dynamic step. In the static step after it the support goes,
-    and a force acts from the start: it stands beside what is left of the reaction."""
+# Forces on the top of a bar of 1000 N/m: in a motion, in the static step after it, and how far both
+# move the top [m].
+RELEASES = {
+    "a force comes": ("", "*CLOAD, AMPLITUDE=ONE\nTOP, 3, 25.\n", 0.0, 0.1),
+    "a force gets a history": (
+        "*CLOAD\nTOP, 3, 25.\n",
+        "*CLOAD, AMPLITUDE=ONE\nTOP, 3, 25.\n",
+        0.1,
+        0.1,
+    ),
+    "a pressure gets other heights": (
+        "*DLOAD\nBODY, HP2, -100., 2., 1.\n",
+        "*DLOAD, AMPLITUDE=ONE\nBODY, HP2, -100., 3., 2.\n",
+        0.1,
+        0.2,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", RELEASES)
+def test_a_support_of_a_motion_goes_and_a_load_comes(keyway, case):
+    """The top is moved to 10 mm in a dynamic step. In the static step after it the support goes,
+    and its reaction fades, without inertia; a load with an amplitude acts from the start."""
+    first, second, before, after = RELEASES[case]
     mesh, number = box_mesh((1, 1, 1), stretched((1.0, 1.0, 1.0)))
     mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
     cards = elastic(1000.0, 0.0, 1.0) + "*AMPLITUDE, NAME=ONE\n0., 1., 1., 1.\n"
     cards += "*BOUNDARY\nBASE, 1, 3\nTOP, 1, 3\n"
     cards += "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.03\n*BOUNDARY\nTOP, 3, 3, 0.01\n"
-    cards += "*NODE PRINT, NSET=TOP\nU\n*END STEP\n"
+    cards += f"{first}*NODE PRINT, NSET=TOP\nU\n*END STEP\n"
     cards += "*STEP\n*STATIC, DIRECT\n0.25, 1.\n*BOUNDARY, OP=NEW\nBASE, 1, 3\nTOP, 1, 2\n"
-    cards += "*CLOAD, AMPLITUDE=ONE\nTOP, 3, 25.\n*END STEP\n"
-    table = keyway(brick_deck(mesh, "C3D8", cards)).csv("node_TOP")
+    table = keyway(brick_deck(mesh, "C3D8", f"{cards}{second}*END STEP\n")).csv("node_TOP")
     now = table["step"] == 2
-    share = table["increment"][now] / 4.0
-    # 100 N over E A / L = 1000 N/m; the reaction was 10 N. 1e-12 is round-off.
-    assert table["U3"][now] == pytest.approx(0.1 + 0.01 * (1.0 - share), rel=1e-12)
+    left = 1.0 - table["increment"][now] / 4.0
+    # The support carries what the first force lacks, or has too much, for 10 mm. 1e-12: round-off.
+    assert table["U3"][now] == pytest.approx(after + (0.01 - before) * left, rel=1e-12)
 
 
 def shaken_bar(parts: list[float], base: str, more: str = "") -> str:

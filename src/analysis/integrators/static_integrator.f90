@@ -17,7 +17,7 @@ module static_integrator
   use motion_goes_on, only: step_before
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: dam_system, build_structure, build_loads, build_origins
-  use step_loads, only: step_time, external_force, force_before
+  use step_loads, only: load_group, step_time, external_force, gather_loads
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
   use integrator_type, only: integrator
@@ -85,7 +85,8 @@ contains
   end subroutine open_step
 
   !> Forces at the start of the step and their residual: initial conditions may leave one, and so
-  !> does the motion of a dynamic step before.
+  !> does the motion of a dynamic step before. What a support that goes has carried, or elements and
+  !> joints that change, is released over the step; loads that begin at the start are not.
   subroutine start_forces(self, model, plan, now)
     type(static_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -100,19 +101,10 @@ contains
       call sum_contact(self%system%operator, now)
       own%balanced = own%external - own%internal - own%contact
       if (plan%changes_stage) then
-        own%release = -own%balanced
+        call find_loads_before(self, model, now, own%release)
+        own%release = own%internal + own%contact - own%release
       else if (frees_supports(plan, now)) then
-        own%release = forces_of_freed(self%system, plan, now)
-        ! After a dynamic step the reaction contains inertia and damping, which do not act any more:
-        ! without them it balances the loads of that step.
-        if (follows_motion(model, now%step)) then
-          where (abs(own%release) > 0.0_rk)
-            own%release = own%internal + own%contact &
-                          - force_before(self%system%groups, size(own%external))
-          elsewhere
-            own%release = 0.0_rk
-          end where
-        end if
+        call find_freed(self, model, plan, now, own%release)
       else
         return
       end if
@@ -121,6 +113,49 @@ contains
       own%balanced = own%balanced + own%release
     end associate
   end subroutine start_forces
+
+  !> What supports have carried that are not there any more. After a dynamic step the reaction
+  !> contains inertia and damping, which do not act any more: without them it balances the loads of
+  !> that step.
+  subroutine find_freed(self, model, plan, now, release)
+    type(static_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< at the start of the step
+    real(rk), allocatable, intent(out) :: release(:) !< (num_total) [N]
+    real(rk) :: reaction(self%system%matrix%num_total)
+    reaction = forces_of_freed(self%system, plan, now)
+    release = reaction
+    if (.not. follows_motion(model, now%step)) return
+    call find_loads_before(self, model, now, release)
+    associate (own => now%motion)
+      release = merge(own%internal + own%contact - release, 0.0_rk, abs(reaction) > 0.0_rk)
+    end associate
+  end subroutine find_freed
+
+  !> The loads of the step before at its end, base motion left out, in the unknowns of this step.
+  subroutine find_loads_before(self, model, now, force)
+    type(static_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now !< at the start of the step
+    real(rk), allocatable, intent(out) :: force(:) !< (num_total) [N]
+    type(load_group), allocatable :: groups(:)
+    type(step_time) :: when
+    logical :: has_changed
+    integer :: before
+    allocate (force(self%system%matrix%num_total), source=0.0_rk)
+    before = step_before(model, now%step)
+    if (before == 0) return
+    associate (plan => model%steps(before), system => self%system)
+      call gather_loads(model, plan, system%numbers, system%matrix, [real(rk) ::], groups, &
+                        self%solids%solver%costs)
+      call update_uplift(model, system%operator, now%joints, groups, self%solids%solver%costs, &
+                         has_changed)
+      when = step_time(is_dynamic=plan%procedure%has_inertia, now=plan%duration, &
+                       start=now%total_time - plan%duration, duration=plan%duration)
+      call external_force(groups, model%amplitudes, when, force)
+    end associate
+  end subroutine find_loads_before
 
   !> Whether the last step before that took time was dynamic.
   pure logical function follows_motion(model, number)

@@ -16,7 +16,7 @@ module step_loads
   implicit none
   private
   public :: load_group, support, step_time, gather_loads, gather_supports
-  public :: external_force, force_before, prescribed_values, factor_at
+  public :: external_force, prescribed_values, factor_at
 
   !> Time at which a factor is evaluated.
   type :: step_time
@@ -191,18 +191,6 @@ contains
       if (abs(factor) > 0.0_rk) force = force + factor*groups(i)%force
     end do
   end subroutine external_force
-
-  !> Forces of the loads with their factors at the end of the step before.
-  pure function force_before(groups, num_total) result(force)
-    type(load_group), intent(in) :: groups(:)
-    integer, intent(in) :: num_total
-    real(rk) :: force(num_total) !< [N]
-    integer :: i
-    force = 0.0_rk
-    do i = 1, size(groups)
-      force = force + groups(i)%rule%start_factor*groups(i)%force
-    end do
-  end function force_before
 
   !> Sets the displacements of the prescribed unknowns at one time.
   subroutine prescribed_values(supports, histories, when, q)
