@@ -17,6 +17,7 @@ module result_files
   use run_summaries, only: run_summary
   use result_writer, only: is_due, starts_analysis
   use requested_fields, only: needs_nodes
+  use missing_results, only: warn_of_missing
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
   use input_files, only: inputs_of, refuse_inputs
@@ -145,6 +146,7 @@ contains
     if (self%is_open) call restart_journals(self%stem, self%num_checkpoints, self%writers, error)
     call self%costs%stop()
     if (allocated(error)) return
+    call warn_of_missing(self%stem, self%writers, self%record)
     call self%summarise(model, error)
   end subroutine go_on
 
