@@ -168,6 +168,7 @@ contains
     if (.not. (allocated(failure) .or. allocated(error))) then
       call load_state(found%now, file, failure)
       if (.not. allocated(failure)) call load_record(found%record, file, failure)
+      found%record%path = found%now%path
       if (.not. allocated(failure)) call load_summary(found%summary, file, failure)
       if (.not. allocated(failure)) call load_positions(writers, file, failure)
     end if
