@@ -55,6 +55,8 @@ set(sources
   system/system_calls.c
   system/undo_driver.c
   system/undo_journal.f90
+  system/undo_pages.c
+  system/undo_restore.c
   text/nearest_words.f90
   text/number_ranges.f90
   text/parse_text.f90

@@ -17,6 +17,7 @@ module result_files
   use run_summaries, only: run_summary
   use result_writer, only: is_due, starts_analysis
   use requested_fields, only: needs_nodes
+  use missing_results, only: warn_of_missing
   use writer_catalogue, only: writer_item, list_writers
   use summary_json, only: write_summary
   use input_files, only: inputs_of, refuse_inputs
@@ -27,7 +28,7 @@ module result_files
   use stop_signals, only: is_asked_to_stop, name_of_signal
   use checkpoint_files, only: list_checkpoint_files, remove_checkpoints, restore_results, &
                               return_to_old
-  use run_checkpoint, only: run_position, load_checkpoint, save_checkpoint, start_journals
+  use run_checkpoint, only: run_position, load_checkpoint, restart_journals, save_checkpoint
   implicit none
   private
   public :: result_folder
@@ -142,9 +143,11 @@ contains
       call self%writers(w)%item%go_on(model, self%stem, self%record, error)
     end do
     self%is_open = .not. allocated(error)
-    if (self%is_open) call start_journals(self%stem, self%num_checkpoints, self%writers, error)
+    if (self%is_open) call restart_journals(self%stem, self%num_checkpoints, self%writers, error)
     call self%costs%stop()
-    if (self%is_open) call self%summarise(model, error)
+    if (allocated(error)) return
+    call warn_of_missing(self%stem, self%writers, self%record)
+    call self%summarise(model, error)
   end subroutine go_on
 
   !> Records, writes and logs a converged increment.
@@ -369,11 +372,8 @@ contains
     call self%summarise(model, failure)
     call keep_first(error, failure)
     if (.not. allocated(error)) return
-    if (message == '') then
-      call mark_summary(self%stem//'.json', error%message)
-    else
-      call mark_summary(self%stem//'.json', message)
-    end if
+    if (message == '') call mark_summary(self%stem//'.json', error%message)
+    if (message /= '') call mark_summary(self%stem//'.json', message)
   end subroutine finish
 
   !> Prints the new warnings of the run.

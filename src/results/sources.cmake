@@ -63,6 +63,7 @@ set(sources
   writers/hdf5_model.f90
   writers/hdf5_points.f90
   writers/history_rows.f90
+  writers/missing_results.f90
   writers/write_damage.f90
   writers/write_energy.f90
   writers/write_hdf5.f90

@@ -43,7 +43,7 @@ DISKS = {
     "h5 later": Disk("job.h5", 700_000),
     "checkpoint": Disk("job.ckpt_new.h5.part", 100_000),
     "checkpoint later": Disk("job.ckpt_new.h5.part", 1_500_000),
-    "journal": Disk("job.undo", 10),
+    "journal": Disk("job.undo_new", 100),
     "journal later": Disk("job.undo", 150_000),
     "json at its start": Disk("job.json.part", 10_000),
     "json at the end": Disk("job.json.part", 30_000),

@@ -1,5 +1,6 @@
 !> Removes the files of an earlier run of the same job, so that none is taken for a result of this
-!> run. Only files listed in the earlier summary and its numbered VTK files are removed.
+!> run. Only files listed in the earlier summary and its numbered VTK files are removed. A run that
+!> goes on keeps them, and notes which are missing.
 module earlier_files
   use file_identity, only: file_path, is_same_file
   use file_system, only: file_name
@@ -8,7 +9,15 @@ module earlier_files
   use whole_files, only: remove_file, write_over, write_whole_file
   implicit none
   private
-  public :: remove_earlier_files, remove_series, mark_summary
+  public :: remove_earlier_files, remove_series, mark_summary, missing_files
+
+  !> Files of the results that a run which goes on does not find.
+  type :: missing_files
+    integer :: num_files = 0
+    character(:), allocatable :: first !< path of the first one; not allocated without one
+  contains
+    procedure :: look_for
+  end type missing_files
 
 contains
 
@@ -93,6 +102,17 @@ contains
       call remove_file(prefix//trim(digits)//'.vtu')
     end do
   end subroutine remove_series
+
+  !> Notes a file if it does not exist.
+  subroutine look_for(self, path)
+    class(missing_files), intent(inout) :: self
+    character(*), intent(in) :: path
+    logical :: exists
+    inquire (file=path, exist=exists)
+    if (exists) return
+    self%num_files = self%num_files + 1
+    if (.not. allocated(self%first)) self%first = path
+  end subroutine look_for
 
   !> Removes one entry of the list; a file whose name does not begin with the job's stays.
   subroutine remove_listed(stem, line, inputs)

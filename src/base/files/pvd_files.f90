@@ -4,6 +4,7 @@ module pvd_files
   use errors, only: error_type
   use text_buffers, only: text_buffer, text_of
   use archive_type, only: archive
+  use earlier_files, only: missing_files
   use whole_files, only: remove_file, write_whole_file
   implicit none
   private
@@ -22,6 +23,7 @@ module pvd_files
     procedure :: save_position
     procedure :: load_position
     procedure :: open_again
+    procedure :: note_missing
     procedure, private :: rewrite
   end type pvd_file
 
@@ -74,6 +76,27 @@ contains
       call remove_file(self%path)
     end if
   end subroutine open_again
+
+  !> Notes the files of the list that do not exist.
+  subroutine note_missing(self, prefix, missing)
+    class(pvd_file), intent(in) :: self
+    character(*), intent(in) :: prefix !< path of each file up to its number, '.../job_vtk/job_'
+    type(missing_files), intent(inout) :: missing
+    character(*), parameter :: start = ' file="'
+    character(:), allocatable :: text, name
+    integer :: first, length
+    text = self%entries%contents()
+    first = 1
+    do
+      length = index(text(first:), start)
+      if (length == 0) return
+      first = first + length - 1 + len(start)
+      length = index(text(first:), '"') - 1
+      name = text(first:first + length - 1)
+      call missing%look_for(prefix//name(index(name, '_', back=.true.) + 1:))
+      first = first + length
+    end do
+  end subroutine note_missing
 
   !> Writes the list anew.
   subroutine rewrite(self, error)

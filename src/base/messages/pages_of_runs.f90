@@ -54,11 +54,13 @@ contains
                   'kill PID', &
                   'keyway --continue -o results dam.inp')
     call list%add('continue', &
-                  '--continue:|cannot continue', &
+                  '--continue:|cannot continue|from before the checkpoint', &
                   'The run cannot go on from the checkpoint: there is none, its deck was '// &
-                  'another one, or files of the results are missing.', &
+                  'another one, or files of the results are missing, changed or damaged. VTK '// &
+                  'files that are missing are a warning.', &
                   'Only later steps may be changed between the two runs; *RESTART, WRITE makes '// &
-                  'checkpoints. Without --continue the analysis begins anew.', &
+                  'checkpoints. Put files back that were moved or removed. Without --continue '// &
+                  'the analysis begins anew.', &
                   'keyway --continue with a changed mesh', &
                   'keyway -o results dam.inp')
     call list%add('folder-in-use', &

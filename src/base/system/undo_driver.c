@@ -3,10 +3,9 @@
  * HDF5 overwrites its own structures in place. A process that is killed meanwhile leaves a file that
  * may be unreadable, and a continued run needs the file as it was at the checkpoint. After
  * keyway_undo_start the driver therefore copies each page of the file to a journal before the first
- * write into the page. keyway_undo_restore writes these pages back and cuts the file to its length.
- *
- * A journal begins with `header`; records follow: address, length, bytes. A record is complete before
- * the file changes, so a last record that is cut off belongs to a page that is still as it was.
+ * write into the page. undo_restore.c writes these pages back and cuts the file to its length. The
+ * journal begins with a digest of the file (undo_pages.h), by which a file is known that was changed
+ * or damaged between two runs.
  *
  * A write can fail in the middle of these structures: the disk is full. The driver therefore holds
  * the pages that were replaced since the last flush in memory as well. After a failure it writes
@@ -14,6 +13,8 @@
  * refuses all further writes. The file is then readable and holds what was written before. */
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
+#include "undo_pages.h"
+
 #include <fcntl.h>
 #include <hdf5.h>
 #include <stdint.h>
@@ -26,25 +27,11 @@
 #include <H5FDdevelop.h>
 #endif
 
-enum { page_size = 4096 };
-static const char magic[8] = "KEYWAYU1";
-
-typedef struct {
-  char magic[8];
-  uint64_t number; /* of the checkpoint */
-  uint64_t length; /* of the file at that moment */
-} header;
-
 /* Pages that change after a moment, when the file had the length `length`. */
 typedef struct {
   haddr_t length;
   unsigned char *has_page; /* one for each page below that length; NULL: no page is of interest */
 } page_set;
-
-typedef struct {
-  uint64_t place[2]; /* address and size */
-  unsigned char bytes[page_size];
-} page_copy;
 
 typedef struct {
   H5FD_t base; /* first, as HDF5 requires */
@@ -53,39 +40,14 @@ typedef struct {
   int journal; /* -1: none */
   page_set kept; /* in the journal */
   page_set held; /* in `copies`, since the last flush */
-  page_copy *copies;
+  page_record *copies;
   size_t num_copies, room_for_copies;
   int is_broken; /* a write has failed: the file stays as it was at the last flush */
+  uint64_t *hashes; /* of blocks; 0: not known since a write */
+  haddr_t room_for_hashes;
   dev_t device;
   ino_t inode;
 } undo_file;
-
-static int put_all(int descriptor, const void *bytes, size_t size, off_t place) {
-  const char *next = bytes;
-  while (size > 0) {
-    ssize_t done = pwrite(descriptor, next, size, place);
-    if (done <= 0) return -1;
-    next += done;
-    place += done;
-    size -= (size_t)done;
-  }
-  return 0;
-}
-
-/* Reads what there is; zeros stand for what lies beyond the end of the file. */
-static int get_all(int descriptor, void *bytes, size_t size, off_t place) {
-  char *next = bytes;
-  while (size > 0) {
-    ssize_t done = pread(descriptor, next, size, place);
-    if (done < 0) return -1;
-    if (done == 0) break;
-    next += done;
-    place += done;
-    size -= (size_t)done;
-  }
-  memset(next, 0, size);
-  return 0;
-}
 
 static int start_pages(page_set *self, haddr_t length) {
   free(self->has_page);
@@ -100,27 +62,28 @@ static void end_pages(page_set *self) {
 }
 
 /* Reads a page that a set does not have yet. 1: it is read, 0: the set has it, -1: a failure. */
-static int read_page(const undo_file *self, const page_set *pages, haddr_t page, page_copy *copy) {
+static int read_page(const undo_file *self, const page_set *pages, haddr_t page, page_record *copy) {
   if (pages->has_page[page]) return 0;
   copy->place[0] = page * page_size;
   copy->place[1] = page_size;
   if (copy->place[0] + page_size > pages->length) copy->place[1] = pages->length - copy->place[0];
-  return get_all(self->descriptor, copy->bytes, copy->place[1], (off_t)copy->place[0]) < 0 ? -1 : 1;
+  return keyway_get_all(self->descriptor, copy->bytes, copy->place[1], (off_t)copy->place[0]) < 0 ? -1 : 1;
 }
 
 /* Adds a page to the journal; a record that is cut off is removed again. */
-static int keep_page(undo_file *self, const page_copy *copy) {
+static int keep_page(undo_file *self, page_record *copy) {
   off_t tail = lseek(self->journal, 0, SEEK_END);
   if (tail < 0) return -1;
-  if (put_all(self->journal, copy, sizeof copy->place + copy->place[1], tail) == 0) return 0;
+  copy->sum = keyway_hash_of_record(copy);
+  if (keyway_put_all(self->journal, copy, record_top + copy->place[1], tail) == 0) return 0;
   if (ftruncate(self->journal, tail) != 0) end_pages(&self->kept);
   return -1;
 }
 
-static int hold_page(undo_file *self, const page_copy *copy) {
+static int hold_page(undo_file *self, page_record *copy) {
   if (self->num_copies == self->room_for_copies) {
     size_t room = 2 * self->room_for_copies + 16;
-    page_copy *copies = realloc(self->copies, room * sizeof *copies);
+    page_record *copies = realloc(self->copies, room * sizeof *copies);
     if (!copies) return -1;
     self->copies = copies;
     self->room_for_copies = room;
@@ -131,8 +94,8 @@ static int hold_page(undo_file *self, const page_copy *copy) {
 
 /* Copies the pages of [first, end) to where they belong, those of a set that it does not have yet. */
 static int copy_pages(undo_file *self, page_set *pages, haddr_t first, haddr_t end,
-                      int (*store)(undo_file *, const page_copy *)) {
-  page_copy copy;
+                      int (*store)(undo_file *, page_record *)) {
+  page_record copy;
   if (!pages->has_page) return 0;
   if (end > pages->length) end = pages->length;
   for (haddr_t page = first / page_size; page * page_size < end; page++) {
@@ -143,8 +106,40 @@ static int copy_pages(undo_file *self, page_set *pages, haddr_t first, haddr_t e
   return 0;
 }
 
+/* The blocks of [first, end) change: their hashes are no longer known. */
+static int forget_hashes(undo_file *self, haddr_t first, haddr_t end) {
+  haddr_t needed = end / block_size + 1;
+  if (needed > self->room_for_hashes) {
+    haddr_t room = 2 * needed;
+    uint64_t *hashes = realloc(self->hashes, room * sizeof *hashes);
+    if (!hashes) return -1;
+    memset(hashes + self->room_for_hashes, 0, (room - self->room_for_hashes) * sizeof *hashes);
+    self->hashes = hashes;
+    self->room_for_hashes = room;
+  }
+  for (haddr_t b = first / block_size; b * block_size < end; b++) self->hashes[b] = 0;
+  return 0;
+}
+
+/* The digest of the file as it is on the disk; reads the blocks that have changed. 0: done. */
+static int find_digest(undo_file *self, uint64_t *digest) {
+  unsigned char *bytes = malloc(block_size);
+  int status = bytes && forget_hashes(self, self->end_of_file, self->end_of_file) == 0 ? 0 : -1;
+  *digest = 0;
+  for (haddr_t b = 0; status == 0 && b * block_size < self->end_of_file; b++) {
+    if (self->hashes[b] == 0) {
+      status = keyway_get_all(self->descriptor, bytes, block_size, (off_t)(b * block_size));
+      self->hashes[b] = keyway_hash_of_block(b, bytes);
+    }
+    *digest += self->hashes[b];
+  }
+  free(bytes);
+  return status;
+}
+
 /* Before [first, end) changes: its pages go to memory and to the journal. */
 static int save_pages(undo_file *self, haddr_t first, haddr_t end) {
+  if (forget_hashes(self, first, end) < 0) return -1;
   if (copy_pages(self, &self->held, first, end, hold_page) < 0) return -1;
   return self->journal < 0 ? 0 : copy_pages(self, &self->kept, first, end, keep_page);
 }
@@ -154,7 +149,7 @@ static int give_up(undo_file *self) {
   self->is_broken = 1;
   if (!self->held.has_page) return -1;
   for (size_t i = 0; i < self->num_copies; i++)
-    if (put_all(self->descriptor, self->copies[i].bytes, self->copies[i].place[1],
+    if (keyway_put_all(self->descriptor, self->copies[i].bytes, self->copies[i].place[1],
                 (off_t)self->copies[i].place[0]) < 0)
       return -1;
   if (ftruncate(self->descriptor, (off_t)self->held.length) != 0) return -1;
@@ -197,6 +192,7 @@ static herr_t close_file(H5FD_t *file) {
   end_journal(self);
   end_pages(&self->held);
   free(self->copies);
+  free(self->hashes);
   free(self);
   return status == 0 ? 0 : -1;
 }
@@ -242,7 +238,7 @@ static herr_t read_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t addr
                          void *bytes) {
   (void)kind;
   (void)plan;
-  return get_all(((undo_file *)file)->descriptor, bytes, size, (off_t)address);
+  return keyway_get_all(((undo_file *)file)->descriptor, bytes, size, (off_t)address);
 }
 
 static herr_t write_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t address, size_t size,
@@ -252,7 +248,7 @@ static herr_t write_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t add
   (void)plan;
   if (self->is_broken) return -1;
   if (save_pages(self, address, address + size) < 0) return give_up(self);
-  if (put_all(self->descriptor, bytes, size, (off_t)address) < 0) return give_up(self);
+  if (keyway_put_all(self->descriptor, bytes, size, (off_t)address) < 0) return give_up(self);
   if (address + size > self->end_of_file) self->end_of_file = address + size;
   return 0;
 }
@@ -328,52 +324,21 @@ int keyway_undo_mark(int64_t file) {
   return start_pages(&self->held, self->end_of_file);
 }
 
-/* Starts the journal of a checkpoint: the present file is what a restore gives. 0: it is started. */
+/* Starts the journal of a checkpoint: the present file, which was flushed, is what a restore gives.
+ * 0: it is started. */
 int keyway_undo_start(int64_t file, const char *path, int number) {
   undo_file *self = record_of(file);
-  header top;
+  journal_top top;
+  uint64_t digest;
   if (!self) return -1;
   end_journal(self);
   self->journal = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  memcpy(top.magic, magic, sizeof magic);
-  top.number = (uint64_t)number;
-  top.length = self->end_of_file;
-  if (self->journal >= 0 && start_pages(&self->kept, self->end_of_file) == 0 &&
-      put_all(self->journal, &top, sizeof top, 0) == 0)
-    return 0;
+  if (self->journal >= 0 && find_digest(self, &digest) == 0 &&
+      start_pages(&self->kept, self->end_of_file) == 0) {
+    keyway_start_top(&top, number, self->end_of_file, digest);
+    if (keyway_put_all(self->journal, &top, sizeof top, 0) == 0) return 0;
+  }
   end_journal(self);
   self->is_broken = 1; /* what is written from now on could not be undone */
   return -1;
-}
-
-/* Number of the checkpoint that a journal belongs to; -1 without a valid journal. */
-int keyway_undo_number(const char *path) {
-  header top;
-  int journal = open(path, O_RDONLY | O_CLOEXEC), number = -1;
-  if (journal < 0) return -1;
-  if (read(journal, &top, sizeof top) == (ssize_t)sizeof top &&
-      memcmp(top.magic, magic, sizeof magic) == 0)
-    number = (int)top.number;
-  close(journal);
-  return number;
-}
-
-/* Sets a file back to the moment when its journal was started. 0: it is done. */
-int keyway_undo_restore(const char *path, const char *journal_path) {
-  header top;
-  uint64_t place[2];
-  unsigned char room[page_size];
-  int status = -1, file = open(path, O_RDWR | O_CLOEXEC);
-  int journal = open(journal_path, O_RDONLY | O_CLOEXEC);
-  if (file >= 0 && journal >= 0 && read(journal, &top, sizeof top) == (ssize_t)sizeof top) {
-    status = 0;
-    while (status == 0 && read(journal, place, sizeof place) == (ssize_t)sizeof place) {
-      if (place[1] > page_size || read(journal, room, place[1]) != (ssize_t)place[1]) break;
-      status = put_all(file, room, place[1], (off_t)place[0]);
-    }
-    if (status == 0) status = ftruncate(file, (off_t)top.length);
-  }
-  if (file >= 0 && close(file) != 0) status = -1;
-  if (journal >= 0) close(journal);
-  return status;
 }

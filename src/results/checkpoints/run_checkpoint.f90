@@ -1,8 +1,8 @@
 !> A checkpoint of a run: the state, the record, the summary, and where the files of results end.
 module run_checkpoint
   use analysis_state, only: state
-  use checkpoint_files, only: checkpoint_path, new_checkpoint_path, journal_path, keep_checkpoint, &
-                              keep_journal
+  use checkpoint_files, only: checkpoint_path, new_checkpoint_path, new_journal_path, &
+                              keep_checkpoint, keep_journal, take_journal
   use checkpoint_identity, only: check_identity, save_identity
   use errors, only: deck_is_wrong, error_type, keep_first, raise, system_failed
   use hdf5_archive, only: hdf5_store
@@ -12,11 +12,12 @@ module run_checkpoint
   use run_summaries, only: run_summary
   use state_archive, only: load_state, save_state
   use summary_archive, only: load_summary, save_summary
+  use whole_files, only: remove_file
   use write_text, only: as_text
   use writer_catalogue, only: writer_item
   implicit none
   private
-  public :: run_position, save_checkpoint, load_checkpoint, load_chosen_state, start_journals
+  public :: run_position, save_checkpoint, load_checkpoint, load_chosen_state, restart_journals
 
   !> What a checkpoint stores of a run.
   type :: run_position
@@ -51,13 +52,23 @@ contains
     if (.not. allocated(error)) call save_positions(writers, file, error)
     call file%close(failure)
     call keep_first(error, failure)
+    if (.not. allocated(error)) call start_journals(stem, number, writers, error)
     if (.not. allocated(error)) call keep_checkpoint(stem, error)
-    if (allocated(error)) return
-    call keep_journal(stem)
-    call start_journals(stem, number, writers, error)
+    if (.not. allocated(error)) call keep_journal(stem, error)
+    if (allocated(error)) call remove_file(new_checkpoint_path(stem))
   end subroutine save_checkpoint
 
-  !> Starts the journal of the last checkpoint.
+  !> Starts the journal of the last checkpoint anew, when a run goes on from there.
+  subroutine restart_journals(stem, number, writers, error)
+    character(*), intent(in) :: stem
+    integer, intent(in) :: number !< of the checkpoint
+    type(writer_item), intent(inout) :: writers(:)
+    type(error_type), allocatable, intent(out) :: error
+    call start_journals(stem, number, writers, error)
+    if (.not. allocated(error)) call take_journal(stem, error)
+  end subroutine restart_journals
+
+  !> Starts the journal of a checkpoint, under another name than that of the last one.
   subroutine start_journals(stem, number, writers, error)
     character(*), intent(in) :: stem
     integer, intent(in) :: number !< of the checkpoint
@@ -66,7 +77,7 @@ contains
     integer :: w
     do w = 1, size(writers)
       if (writers(w)%item%is_idle) cycle
-      call writers(w)%item%start_undo(journal_path(stem, is_old=.false.), number, error)
+      call writers(w)%item%start_undo(new_journal_path(stem), number, error)
       if (allocated(error)) return
     end do
   end subroutine start_journals
@@ -157,6 +168,7 @@ contains
     if (.not. (allocated(failure) .or. allocated(error))) then
       call load_state(found%now, file, failure)
       if (.not. allocated(failure)) call load_record(found%record, file, failure)
+      found%record%path = found%now%path
       if (.not. allocated(failure)) call load_summary(found%summary, file, failure)
       if (.not. allocated(failure)) call load_positions(writers, file, failure)
     end if

@@ -5,6 +5,7 @@ module result_writer
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use archive_type, only: archive
+  use earlier_files, only: missing_files
   use file_identity, only: file_path
   use run_ledger, only: ledger
   use run_records, only: run_record
@@ -23,6 +24,7 @@ module result_writer
     procedure :: save_position
     procedure :: load_position
     procedure :: go_on
+    procedure :: note_missing
     procedure :: start_undo
     procedure :: write_modes
     procedure :: write_envelopes
@@ -88,7 +90,13 @@ contains
     call self%open(model, stem, record, error)
   end subroutine go_on
 
-  !> A checkpoint is complete: what is written from now on can be undone.
+  !> Notes files from before the checkpoint that do not exist, beyond those of the record.
+  subroutine note_missing(self, missing)
+    class(writer), intent(in) :: self
+    type(missing_files), intent(inout) :: missing
+  end subroutine note_missing
+
+  !> What is written from now on can be undone.
   subroutine start_undo(self, journal, number, error)
     class(writer), intent(inout) :: self
     character(*), intent(in) :: journal !< path

@@ -13,7 +13,7 @@ module write_joint_vtk
                            heaviest_on_corners, nodes_to_corners
   use vtk_order, only: cell_of_polygon
   use archive_type, only: archive
-  use earlier_files, only: remove_series
+  use earlier_files, only: missing_files, remove_series
   use file_identity, only: add_path, file_path
   use vtu_files, only: vtu_file
   use pvd_files, only: pvd_file, frame_name
@@ -33,6 +33,7 @@ module write_joint_vtk
   contains
     procedure :: open => open_joint_vtk
     procedure :: go_on => go_on_with_joint_vtk
+    procedure :: note_missing => note_missing_joint_vtk
     procedure :: list_paths => list_joint_vtk
     procedure :: save_position => save_joint_vtk
     procedure :: load_position => load_joint_vtk
@@ -68,6 +69,13 @@ contains
     call remove_series(self%folder//self%stem//'_', self%num_frames + 1)
     call self%frames%open_again(error)
   end subroutine go_on_with_joint_vtk
+
+  !> Notes the files of the series that do not exist.
+  subroutine note_missing_joint_vtk(self, missing)
+    class(joint_series), intent(in) :: self
+    type(missing_files), intent(inout) :: missing
+    call self%frames%note_missing(self%folder//self%stem//'_', missing)
+  end subroutine note_missing_joint_vtk
 
   !> The list of the series.
   subroutine list_joint_vtk(self, model, stem, record, paths)

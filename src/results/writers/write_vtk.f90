@@ -14,7 +14,7 @@ module write_vtk
   use envelopes, only: name_of_field
   use vtk_order, only: tensor_in_vtk_order, tensor_names_in_vtk_order, cell_of_solid
   use archive_type, only: archive
-  use earlier_files, only: remove_series
+  use earlier_files, only: missing_files, remove_series
   use file_identity, only: add_path, file_path
   use vtu_files, only: vtu_file
   use whole_files, only: remove_file
@@ -37,6 +37,7 @@ module write_vtk
   contains
     procedure :: open => open_vtk
     procedure :: go_on => go_on_with_vtk
+    procedure :: note_missing => note_missing_vtk
     procedure :: list_paths => list_vtk
     procedure :: save_position => save_vtk
     procedure :: load_position => load_vtk
@@ -78,6 +79,13 @@ contains
     end do
     call self%frames%open_again(error)
   end subroutine go_on_with_vtk
+
+  !> Notes the files of the series that do not exist.
+  subroutine note_missing_vtk(self, missing)
+    class(vtk_series), intent(in) :: self
+    type(missing_files), intent(inout) :: missing
+    call self%frames%note_missing(self%folder//self%job//'_', missing)
+  end subroutine note_missing_vtk
 
   !> Removes a file outside the series unless the checkpoint lists it.
   subroutine remove_unlisted(self, ending, record)
