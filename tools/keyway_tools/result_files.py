@@ -36,6 +36,25 @@ def natural(name: str) -> list[tuple[bool, int, str]]:
     return [(not word.isdecimal(), int(word) if word.isdecimal() else 0, word) for word in words]
 
 
+def as_file_word(name: str) -> str:
+    """The name of a set or joint in the name of its table.
+
+    >>> as_file_word("FUGE Ü 1")
+    'FUGE____1'
+    """
+    return re.sub(rb"[^A-Za-z0-9_.-]", b"_", name.encode()).decode()
+
+
+def energy_names(table: Table) -> list[str]:
+    """The energies among the columns of a balance of energy, those of all decks first.
+
+    Decks with stages and with temperatures have more of them.
+    """
+    usual = ("external", "strain", "kinetic")
+    names = [name for name in table if name not in ("step", "increment", "time", "error")]
+    return [n for n in usual if n in names] + [n for n in names if n not in usual]
+
+
 def as_numbers(column: tuple[str, ...]) -> np.ndarray:
     """The column as numbers if every field is one or empty (NaN), else as texts."""
     try:

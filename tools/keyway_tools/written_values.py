@@ -19,7 +19,6 @@ NO_RESULTS = (".log", ".out")
 SUMMARY_IGNORED = (
     "program.*",
     "machine.*",
-    "machine.*",
     "deck",
     "deck.*",
     "ledger",
@@ -32,7 +31,7 @@ SUMMARY_IGNORED = (
 )
 ENERGIES = {
     *("external", "kinetic", "strain", "damping", "friction", "fracture", "crushing"),
-    *("numerical", "work", "stored"),
+    *("numerical", "stages", "temperature", "work", "stored"),
 }
 # Numbers that are relative already: their differences are not divided.
 RATIOS = ("error", "residual", "largest_residual", "largest_energy_error")
