@@ -200,7 +200,7 @@ def compare_arrays(a: np.ndarray, b: np.ndarray, measure: float) -> tuple[float,
     if not gaps.any():
         return 0.0, ""
     place = first_index(gaps == gaps.max())
-    size = float(gaps[place] / measure) if measure > 0 else np.inf
+    size = float(gaps[place]) / measure if measure > 0 else np.inf
     row = f" at {', '.join(map(str, place))}" if place else ""
     return size, f"{a[place]:.9g} before, {b[place]:.9g} after{row}; largest {measure:.3g}"
 
