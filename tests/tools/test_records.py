@@ -282,6 +282,11 @@ def test_command_fits_the_design_spectrum(write, tmp_path):
         (["--record", "FILE", "--axes", "x", "y"], "1 components"),
         (["--record", "FILE", "--pga", "0.3", "--factor", "2"], "one way to scale"),
         (["--record", "FILE", "--fit", "1", "0.1"], "two periods T1 < T2"),
+        (["--record", "FILE", "--fit", "1e-9", "1"], "from 1e-09 s; expected at least the time"),
+        (["--record", "FILE", "--fit", "1", "1e12"], "the spectrum is zero at periods up to 1e+12"),
+        (["--record", "FILE", "--resample", "9"], "9 s between values; expected 4e-08 to 0.04 s"),
+        (["--record", "FILE", "--resample", "1e-9"], "1e-09 s between values; expected 4e-08"),
+        (["--record", "FILE", "--cut", "0", "0.005", "--baseline"], "2 values is too short for"),
     ],
 )
 def test_command_refuses(write, capsys, arguments, message):
