@@ -6,6 +6,7 @@ import h5py
 import matplotlib
 import numpy as np
 import pytest
+from keyway.commands import plot
 from keyway_tools.box_mesh import box_mesh, stretched
 from keyway_tools.picture_style import Sheet
 from keyway_tools.pictures_curves import (
@@ -17,6 +18,7 @@ from keyway_tools.pictures_curves import (
     plot_nodes,
     plot_openings,
 )
+from keyway_tools.report import __main__ as report
 from keyway_tools.report.curves import plots
 from keyway_tools.result_files import as_file_word
 from keyway_tools.si_results import SiResults, Units
@@ -217,3 +219,21 @@ def test_a_static_step_between_motions_is_a_gap(folder):
     assert values == pytest.approx([0, 10, 20, 30, np.nan, 60, 70], nan_ok=True)
     time, _ = Span(SiResults(folder), {4}).curve(table, rows, 10.0 * rows)
     assert time.tolist() == [4.0, 5.0]
+
+
+def test_a_table_that_is_not_whole_is_named(folder, capsys):
+    """No traceback, by plot and by report."""
+    write_openings(folder, "J1", [(1, 0.1, 1e-3)])
+    with (folder / "job_joint_J1.csv").open("a") as file:
+        file.write("1,2,0.2\n")
+    for main in (plot.main, report.main):
+        assert main([str(folder)]) == 2
+        assert "job_joint_J1.csv:3: 3 values, expected 8" in capsys.readouterr().err
+
+
+def test_fields_that_are_not_whole_are_named(folder, capsys):
+    """Zeros over the names of a group."""
+    content = (folder / "job.h5").read_bytes()
+    (folder / "job.h5").write_bytes(content.replace(b"HEAP", b"\0\0\0\0"))
+    assert plot.main([str(folder)]) == 2
+    assert "job.h5" in capsys.readouterr().err

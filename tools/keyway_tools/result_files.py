@@ -13,6 +13,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .program import DamagedFileError
+
 Table = dict[str, np.ndarray]
 
 
@@ -21,11 +23,11 @@ def read_table(path: Path | str) -> Table:
     with Path(path).open(newline="", encoding="utf-8-sig") as file:
         rows = [row for row in csv.reader(file) if row]
     if not rows:
-        raise ValueError(f"{path}: empty, expected a header line")
+        raise DamagedFileError(f"{path}: empty, expected a header line")
     header = [name.strip() for name in rows[0]]
     for number, row in enumerate(rows[1:], 2):
         if len(row) != len(header):
-            raise ValueError(f"{path}:{number}: {len(row)} values, expected {len(header)}")
+            raise DamagedFileError(f"{path}:{number}: {len(row)} values, expected {len(header)}")
     columns = zip(*rows[1:], strict=True) if len(rows) > 1 else [()] * len(header)
     return {name: as_numbers(column) for name, column in zip(header, columns, strict=True)}
 
@@ -73,7 +75,7 @@ def load_json(path: Path | str) -> Any:
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
     except ValueError as error:
-        raise ValueError(f"{path} cannot be read, it is not whole: {error}") from None
+        raise DamagedFileError(f"{path} cannot be read, it is not whole: {error}") from None
 
 
 def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
