@@ -28,6 +28,7 @@ from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.arch_blocks import JOINS, build_block_dam
+from keyway_tools.arch_checks import check_deck_options
 from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
@@ -248,26 +249,17 @@ def read_cards(file: Path | None) -> tuple[str, ...]:
         return ()
     if not file.is_file():
         raise ValueError(f"there is no file of cards '{file}'")
-    lines = (line.rstrip() for line in file.read_text(encoding="utf-8").splitlines())
+    try:
+        text = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as fault:
+        raise ValueError(f"{file}: {fault}; expected text") from None
+    lines = (line.rstrip() for line in text.splitlines())
     return tuple(line for line in lines if line and not line.startswith("**"))
-
-
-def check_materials(chosen: argparse.Namespace) -> None:
-    """Constants of concrete and rock, and the damping. Raises ValueError."""
-    for name in ("concrete", "rock"):
-        given = getattr(chosen, name)
-        modulus, ratio, *density = given
-        if modulus <= 0.0 or not -1.0 < ratio < 0.5 or min(density, default=0.0) < 0.0:
-            found = " ".join(f"{value:g}" for value in given)
-            rest = ", RHO of 0 or more" if density else ""
-            raise ValueError(f"--{name} {found}: expected E above 0, NU in -1..0.5{rest}")
-    if max(chosen.damping[1:]) <= 0.0:
-        raise ValueError("--damping: expected frequencies F1, F2 above 0")
 
 
 def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
     """DeckOptions from the command line; motion files relative to the deck."""
-    check_materials(chosen)
+    check_deck_options(chosen)
     folder = chosen.output.parent
     water = chosen.water
     if water is None:

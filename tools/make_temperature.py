@@ -23,11 +23,20 @@ import numpy as np
 from keyway_tools.command import command
 from keyway_tools.option_types import above_zero, count, finite
 from keyway_tools.program import reason_of
-from keyway_tools.temperature.climate import MONTHS, WARMEST, Air, Climate, Level, Water
+from keyway_tools.temperature.climate import (
+    FREEZING,
+    MONTHS,
+    WARMEST,
+    Air,
+    Climate,
+    Level,
+    Water,
+)
 from keyway_tools.temperature.dam_in_deck import (
     Dam,
     Place,
     first_layer,
+    nodes_without_thickness,
     place_nodes,
     read_dam,
 )
@@ -129,10 +138,24 @@ def times_of(chosen: argparse.Namespace) -> np.ndarray:
     return times
 
 
+def warn_of_ice(water: Water | None) -> None:
+    """The formula knows no ice."""
+    lowest, depth = (FREEZING, 0.0) if water is None else water.coldest()
+    if lowest < FREEZING:
+        print(
+            f"make_temperature: warning: the water falls to {lowest:.1f} deg C, {depth:.0f} m below"
+            " its surface; it freezes at 0: check --water SURFACE AMPLITUDE BOTTOM",
+            file=sys.stderr,
+        )
+
+
 def show(dam: Dam, place: Place, wall: Wall, is_linear: bool) -> None:
     """Print sizes, and whether the elements are too thick for the wave of a year."""
     low, high = place.thickness.min(), place.thickness.max()
     print(f"{len(dam.numbers)} nodes of the dam, {low:.2f} to {high:.2f} m thick")
+    meeting = len(nodes_without_thickness(dam, place))
+    if meeting:
+        print(f"note: the faces meet at {meeting} nodes of the crest: the mean of both there")
     layer, fall = first_layer(dam, place), 1.0 / wall.wave_number(1).real
     if layer > fall and not is_linear:
         print(f"note: elements at the faces are up to {layer:.1f} m thick, the wave of a year")
@@ -152,6 +175,7 @@ def main(arguments: list[str] | None = None) -> int:
         if chosen.harmonics is not None:
             harmonics = chosen.harmonics
         clock, place = Clock(chosen.start, chosen.year), place_nodes(dam)
+        nodes_without_thickness(dam, place)
         wall = Wall(place.depth, place.thickness, chosen.diffusivity, YEAR)
         field = seasonal_field(wall, place, climate, harmonics, chosen.linear)
         values = field.at(clock.part_of_year(times))
@@ -160,6 +184,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (OSError, ValueError) as fault:
         print(f"make_temperature: {reason_of(fault)}", file=sys.stderr)
         return 2
+    warn_of_ice(climate.water)
     show(dam, place, wall, chosen.linear)
     print(f"{len(times)} times, {values.min():.2f} to {values.max():.2f} degrees; wrote {output}")
     if not chosen.no_picture:

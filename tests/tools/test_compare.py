@@ -121,6 +121,18 @@ def test_kinds_of_difference(capsys, tmp_path, a, file, old, new, message):
     assert (message or "equal") in text
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("options", [["--rel", "1e9", "--by-column"], ["--rel", "1e308"]])
+def test_a_tolerance_beyond_all_numbers_allows_all_but_nan(capsys, tmp_path, a, options):
+    """Without a warning of numpy."""
+    b = make_results(tmp_path / "b")
+    for folder in (a, b):
+        change(folder / "dam_node_TIP.csv", "-4.0", "1.7e308")
+    assert run(capsys, a, b, *options)[0] == 0
+    change(b / "dam_node_TIP.csv", ",3,", ",nan,")
+    assert run(capsys, a, b, *options)[0] == 1
+
+
 def test_differences_of_hdf5(capsys, tmp_path, a):
     b = make_results(tmp_path / "b")
     with h5py.File(b / "dam.h5", "a") as file:

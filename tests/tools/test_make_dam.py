@@ -88,13 +88,55 @@ def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
         (["--water", "200"], "water must lie in 0..135.5"),
         (["--motion", "nowhere.txt"], "there is no motion file 'nowhere.txt'"),
         (["--uplift", "OPEN", "--water", "0"], "--uplift needs water"),
-        (["--reduced", "2"], "--reduced: 2; expected an error between 0 and 1"),
+        (["--reduced", "0.6"], "--reduced: 0.6; expected an error above 0, up to 0.5"),
+        (["--note", "bla"], "--note 'bla': expected the form 'Head: text'"),
+        (["--note", "Head: "], "--note 'Head: ': expected the form 'Head: text'"),
+        (["--title", "*END"], "--title '*END': expected one line"),
+        (["--title", "a\n*END"], "expected one line"),
+        (["--damping", "0.05", "0", "10"], "--damping 0.05 0 10: expected frequencies above 0"),
+        (["--damping", "0.05", "5", "5"], "--damping 0.05 5 5: expected frequencies above 0, F1"),
+        (["--damping", "1", "2", "10"], "--damping 1 2 10: expected a RATIO of 0 or more and bel"),
+        (["--concrete", "2e10", "0.2", "0", "--modes", "2"], "expected RHO above 0 with --motion"),
+        (["--motion", "x.txt", "--increment", "11"], "--increment 11: expected at most the dura"),
+        (["--picture-every", "3000000000"], "expected up to 2147483647"),
         (["--reduced", "0.1", "--uplift", "OPEN"], "--reduced takes --uplift LINEAR"),
     ],
 )
 def test_options_out_of_range_are_reported(tmp_path, capsys, options, message):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), *options]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_limits_of_the_program_are_those_of_the_tool(tmp_path, keyway):
+    """The largest values that the tool takes, by the program."""
+    motion = tmp_path / "x.txt"
+    motion.write_text("0.\n1.\n0.\n")
+    extremes = ["--damping", "0.999", "1", "1.001", "--reduced", "0.5", "--increment", "0.1"]
+    notes = ["--note", "Site: nowhere", "--title", "A dam: small"]
+    write_deck(tmp_path, "--motion", str(motion), "--duration", "0.1", *extremes, *notes)
+    assert keyway(tmp_path / "dam.inp", "--check").code == 0
+
+
+def test_cards_that_are_no_text_are_refused(tmp_path, capsys):
+    cards = tmp_path / "cards.txt"
+    cards.write_bytes(b"\xff\xfe")
+    assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--concrete-cards", str(cards)]) == 2
+    assert f"{cards}: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("text", "message"), [("nan\n1.\n", ":1: found 'nan'"), ("", "no record")])
+def test_motion_that_is_no_motion_is_refused(tmp_path, capsys, text, message):
+    motion = tmp_path / "x.txt"
+    motion.write_text(text)
+    assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--motion", str(motion)]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_motion_with_blank_lines_is_taken_as_it_is(tmp_path):
+    motion = tmp_path / "x.txt"
+    motion.write_text("0.\n1.\n\n0.\n\n")
+    deck, _ = write_deck(tmp_path, "--motion", str(motion))
+    assert "INPUT=x.txt, FORMAT=VALUES" in deck
 
 
 def test_the_water_follows_the_height(tmp_path):

@@ -28,6 +28,7 @@ def deck(tmp_path):
     }
     mesh.node_sets = {"WET": number[:, 0, 2:].ravel(), "DRY": number[:, -1, 2:].ravel()}
     mesh.node_sets["CREST"] = number[:, 3, -1]
+    mesh.node_sets |= {"SIDE": number[0, :, 2:].ravel(), "FOOT": number[:, :, 2].ravel()}
     types = {"DAM": "C3D8", "ROCK": "C3D8"}
     # sets of bricks must lie in the order of the mesh
     order = np.concatenate(list(mesh.brick_sets.values()))
@@ -36,7 +37,9 @@ def deck(tmp_path):
     mesh.brick_sets = {name: rank[m] for name, m in mesh.brick_sets.items()}
     mesh.surfaces = {n: [(int(rank[b]), f) for b, f in faces] for n, faces in mesh.surfaces.items()}
     (tmp_path / "wall_mesh.inp").write_text(mesh_deck(mesh, types, "A wall"))
-    (tmp_path / "wall.inp").write_text("*INCLUDE, INPUT=wall_mesh.inp\n")
+    (tmp_path / "wall.inp").write_text(
+        "*INCLUDE, INPUT=wall_mesh.inp\n*SURFACE, NAME=ODD\nDAM, S7\n*SURFACE, NAME=BARE\nDAM\n"
+    )
     return tmp_path / "wall.inp", mesh
 
 
@@ -170,8 +173,23 @@ def test_picture_of_four_dates(deck, capsys):
     ("options", "message"),
     [
         (["--dam", "WALL"], "no set of elements 'WALL'; expected one of DAM, ROCK"),
-        (["--upstream", "FACE"], "no surface or node set 'FACE'; expected one of CREST, DOWN"),
+        (
+            ["--upstream", "FACE"],
+            "no surface or node set 'FACE'; expected one of BARE, CREST, DOWN",
+        ),
         (["--upstream", "CREST"], "'CREST' has no face of the dam's elements"),
+        (["--downstream", "UPSTREAM"], "16 faces belong to 'UPSTREAM' (upstream) and 'UPSTREAM'"),
+        (
+            ["--downstream", "WET"],
+            "16 faces belong to 'UPSTREAM' (upstream) and 'WET' (downstream)",
+        ),
+        (["--downstream", "SIDE"], "8 nodes lie on both faces, as node"),
+        (["--downstream", "FOOT"], "3 nodes lie on both faces, as node"),
+        (["--downstream", "ODD"], "surface 'ODD': found 'DAM, S7'; expected S1, S2, S3, S4, S5 or"),
+        (
+            ["--downstream", "BARE"],
+            "surface 'BARE': found 'DAM'; expected S1, S2, S3, S4, S5 or S6",
+        ),
         (["--level", "20"], "--water and --level belong together"),
         (["--water", "16", "9", "6"], "--water and --level belong together"),
         (["--water", "16", "9", "6", "--level", "5"], "depth of the water: -1 m; expected > 0"),
@@ -187,6 +205,29 @@ def test_input_that_cannot_be_used(deck, capsys, options, message):
     assert make_temperature.main([str(path), *WAVE, *options]) == 2
     assert message in capsys.readouterr().err
     assert not path.with_name("wall_temperature.csv").exists()
+
+
+def test_faces_that_meet_at_the_crest(tmp_path, capsys):
+    """A triangular section: the nodes of the edge have the mean of both faces."""
+    nodes = "1,0,0,0\n2,1,0,0\n3,1,3,0\n4,0,3,0\n5,0,0,4\n6,1,0,4\n"
+    mesh = f"*NODE\n{nodes}*ELEMENT, TYPE=C3D8, ELSET=DAM\n1, 1,2,3,4, 5,6,6,5\n"
+    faces = "*NSET, NSET=WET\n1,2,5,6\n*NSET, NSET=DRY\n3,4,5,6\n"
+    (tmp_path / "wall.inp").write_text(mesh + faces)
+    names = ["--upstream", "WET", "--downstream", "DRY", "--sun", "4", "0"]
+    rows = make(
+        tmp_path / "wall.inp", *WAVE, *WATER[:4], "--level", "3", *names, "--times", "0", "1"
+    )
+    assert np.isfinite(rows[0.0]["value"]).all()
+    assert "the faces meet at 2 nodes of the crest" in capsys.readouterr().out
+
+
+def test_water_below_freezing_is_warned_of(deck, capsys):
+    """At the surface, where the amplitude is larger than the mean; not where it is smaller."""
+    path, _ = deck
+    make(path, *WAVE, "--water", "6", "9", "6", "--level", "20")
+    assert "warning: the water falls to -3.0 deg C, 0 m below" in capsys.readouterr().err
+    make(path, *WAVE, "--water", "16", "9", "10", "--level", "20")
+    assert capsys.readouterr().err == ""
 
 
 def test_a_deck_that_is_not_there(tmp_path, capsys):

@@ -233,6 +233,36 @@ def test_a_deck_with_parts_is_refused(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        (
+            "a.inp",
+            "*NODE\n1, 0., 0., 0.\n*element, elset=J, type=JOINT8\n1, 1, 1, 1, 1, 1, 1, 1, 1\n",
+            "a deck with elements of Keyway (JOINT8); expected the mesh of another program",
+        ),
+        ("a.inp", "", "no nodes; expected a mesh of solids"),
+        ("a.inp", "*NODE\n1, 0., 0., 0.\n*ELEMENT, TYPE=C3D4\n1, 1, 1, 1, 7\n", "number or name 7"),
+        ("a.msh", "this is no mesh\n", "meshio reads: its contents are not those of .msh"),
+        ("a.vtu", "", "not a mesh that meshio reads: "),
+    ],
+)
+def test_the_reason_is_given(tmp_path, capfd, name, text, message):
+    """In one line, without what meshio prints beside it."""
+    (tmp_path / name).write_text(text)
+    assert main([str(tmp_path / name)]) == 2
+    said = capfd.readouterr().err
+    assert message in said
+    assert len(said.splitlines()) == 1
+    assert "(1)" not in said
+
+
+def test_factors_are_finite(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        main([str(tmp_path / "a.msh"), "--scale", "inf"])
+    assert "inf: expected a number above 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
     ("name", "expected"),
     [("joint 1", "JOINT_1"), ("2nd", "G2ND"), ("Fuß", "FU"), ("--", "GROUP"), ("a.b", "A_B")],
 )

@@ -9,6 +9,8 @@ from .construction.lifts import Construction, construction_steps, joints_there
 from .deck_text import comment
 from .mesh_data import BrickMesh
 
+LARGEST_ERROR = 0.5  # of *DYNAMIC, REDUCED, ACCURACY (keywords.md)
+
 
 @dataclass(frozen=True)
 class DeckOptions:
@@ -55,8 +57,10 @@ class DeckOptions:
             )
         if self.reduced is None:
             return
-        if not 0.0 < self.reduced < 1.0:
-            raise ValueError(f"--reduced: {self.reduced:g}; expected an error between 0 and 1")
+        if not 0.0 < self.reduced <= LARGEST_ERROR:
+            raise ValueError(
+                f"--reduced: {self.reduced:g}; expected an error above 0, up to {LARGEST_ERROR:g}"
+            )
         if self.concrete_cards:
             raise ValueError("--reduced takes linear elastic concrete, not --concrete-cards")
         if self.uplift == "OPEN":

@@ -9,9 +9,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 
-from .program import reason_of
+from .program import DamagedFileError, reason_of
 
 EXIT_USAGE = 2
+# How h5py begins its messages on a part of a file that is damaged.
+HDF5_FAULTS = ("Unable to synchronously", "Unable to open object", "Can't synchronously")
 Main = Callable[..., int]
 
 
@@ -86,8 +88,13 @@ def command(name: str) -> Callable[[Main], Main]:
                 with _outputs_without_end():
                     try:
                         return main(*arguments)
-                    except OSError as error:
+                    except (OSError, DamagedFileError) as error:
                         print(f"{name}: {reason_of(error)}", file=sys.stderr)
+                        return EXIT_USAGE
+                    except (KeyError, RuntimeError) as error:
+                        if not any(words in str(error) for words in HDF5_FAULTS):
+                            raise
+                        print(f"{name}: job.h5 is not whole: {reason_of(error)}", file=sys.stderr)
                         return EXIT_USAGE
             except OSError as error:  # of the last lines of the output
                 print(f"{name}: output: {reason_of(error)}", file=sys.stderr)

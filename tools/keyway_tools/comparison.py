@@ -40,7 +40,8 @@ class Tolerance:
         if self.by_column:
             finite = size[np.isfinite(size)]
             size = np.full(size.shape, finite.max() if finite.size else 0.0)
-        return self.absolute + self.relative * np.where(np.isfinite(size), size, 0.0)
+        with np.errstate(over="ignore"):  # beyond the largest number all is allowed
+            return self.absolute + self.relative * np.where(np.isfinite(size), size, 0.0)
 
 
 @dataclass
@@ -111,12 +112,14 @@ def compare_numbers(report: Report, place: str, a: Any, b: Any, tolerance: Toler
     if not a.size:
         return
     distance, allowed = distances(a, b), tolerance.allowed(b)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         excess = np.where(distance == 0, 0.0, distance / allowed)
+        excess[np.isinf(distance)] = np.inf  # a number that one side lacks, at any tolerance
     worst = np.unravel_index(int(np.argmax(excess)), a.shape)
     count = int(np.count_nonzero(excess > 1))
-    size = abs(b[worst])
-    relative = f", {distance[worst] / size:.3g} of it" if 0 < size < np.inf else ""
+    apart, size = float(distance[worst]), abs(float(b[worst]))
+    share = apart / size if 0 < size < np.inf else np.inf
+    relative = f", {share:.3g} of it" if share < np.inf else ""
     text = (
         f"{count} of {a.size} past the tolerance; largest at {name(worst)}: "
         f"{a[worst]:.9g} against {b[worst]:.9g} (apart {distance[worst]:.3g}{relative}, "

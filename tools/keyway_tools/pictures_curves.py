@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from .picture_style import COLOURS, GREY, Sheet, new_figure
+from .result_files import energy_names, natural
 from .si_results import SiResults
 
 MOST_CURVES = 6
+LEAST = 1e-6  # of the largest value: less is round-off
+FEW_POINTS = 3  # a curve of fewer points is drawn with marks
 
 
 def _curves_by(values: dict[str, np.ndarray], key: str) -> dict[int, np.ndarray]:
     """Rows of each node or point."""
     return {int(number): np.flatnonzero(values[key] == number) for number in np.unique(values[key])}
+
+
+def _look(number: int) -> dict[str, str]:
+    """Colour and line of a curve; each pair of both comes once."""
+    lines = ("-", "--", ":", "-.")
+    times, place = divmod(number, len(COLOURS))
+    return {"color": COLOURS[place], "ls": lines[times % len(lines)]}
+
+
+def _mark(count: int) -> str:
+    """The mark at the points of a curve: one of one point would not be seen."""
+    return "o" if count < FEW_POINTS else ""
 
 
 def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
@@ -25,7 +41,7 @@ def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
     """
     names = [name for name in results.tables() if name.startswith("joint_")]
     tables = {name.removeprefix("joint_"): results.table(name) for name in names}
-    tables = {name: table for name, table in tables.items() if len(table.get("time", ()))}
+    tables = {name: table for name, table in tables.items() if len(table.get("opening", ()))}
     if not tables:
         return []
     columns = _columns(results, list(tables.values()))
@@ -35,8 +51,9 @@ def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
     )  # fmt: skip
     for row, (name, table) in zip(axes, tables.items(), strict=True):
         for axis, (kind, steps) in zip(row, columns.items(), strict=True):
-            _opening_panel(axis, table, steps)
-            axis.set_title(f"Opening of joint {name}{', ' if kind else ''}{kind}")
+            _opening_panel(axis, table, Span(results, steps))
+            title = f"Opening of joint {results.joint_of_table(name)}"
+            axis.set_title(f"{title}{', ' if kind else ''}{kind}")
         row[0].set_ylabel("opening [mm]")
         row[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     for axis, kind in zip(axes[-1], columns, strict=True):
@@ -59,71 +76,154 @@ def _columns(results: SiResults, tables: list[dict[str, np.ndarray]]) -> dict[st
     return found if len(found) > 1 else {"": {int(s) for table in tables for s in table["step"]}}
 
 
-def _opening_panel(axis, table: dict[str, np.ndarray], steps: set[int]) -> None:
+class Span:
+    """The steps that a panel shows; a curve has a gap where steps between them are not shown."""
+
+    def __init__(self, results: SiResults, shown: set[int]):
+        self.shown = list(shown)
+        timed = {step.number for step in results.steps() if "FREQUENCY" not in step.procedure}
+        self.hidden = np.array(sorted(timed - shown))
+
+    def curve(
+        self, table: dict[str, np.ndarray], rows: np.ndarray, values: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Times and values of the rows (of some rows of a table) that lie in the steps."""
+        chosen = np.isin(table["step"][rows], self.shown)
+        before = np.searchsorted(self.hidden, table["step"][rows][chosen])
+        gaps = np.flatnonzero(np.diff(before)) + 1
+        both = (table["time"][rows][chosen], values[rows][chosen])
+        return tuple(np.insert(one, gaps, np.nan) for one in both)
+
+
+def _largest(values: np.ndarray) -> float:
+    """The largest value; 0 where there is none."""
+    return float(np.max(values, where=np.isfinite(values), initial=0.0))
+
+
+def _opening_panel(axis, table: dict[str, np.ndarray], span: Span) -> None:
     """The points that open most in all steps, in some of them."""
     points = _curves_by(table, "point")
-    most = sorted(points, key=lambda p: -table["opening"][points[p]].max())[:MOST_CURVES]
+    most = sorted(points, key=lambda p: -_largest(table["opening"][points[p]]))[:MOST_CURVES]
     for point in most:
-        rows = points[point][np.isin(table["step"][points[point]], list(steps))]
-        x, y, z = (table[axis_name][points[point][0]] for axis_name in "xyz")
+        rows = points[point]
+        x, y, z = (table[axis_name][rows[0]] for axis_name in "xyz")
         label = f"point {point} ({x:.1f}, {y:.1f}, {z:.1f}) m"
-        axis.plot(table["time"][rows], 1000.0 * table["opening"][rows], lw=1.0, label=label)
+        time, opening = span.curve(table, rows, 1000.0 * table["opening"])
+        axis.plot(time, opening, lw=1.0, marker=_mark(len(time)), label=label)
     axis.axhline(0.0, color=GREY, lw=0.8)
     axis.margins(x=0.0)
 
 
+@dataclass(frozen=True)
+class NodeCurve:
+    """The displacements of a node that the deck prints, and how far it moves."""
+
+    name: str  # of the set of nodes
+    node: int
+    table: dict[str, np.ndarray]
+    rows: np.ndarray
+    motion: float  # largest range of a component, from the place at the start [m]
+
+
+def _node_curves(results: SiResults) -> list[list[NodeCurve]]:
+    """The nodes of each *NODE PRINT with displacements."""
+    sets = []
+    for name in (name for name in results.tables() if name.startswith("node_")):
+        table = results.table(name)
+        if not len(table.get("U1", ())):
+            continue
+        own = []
+        for node, rows in _curves_by(table, "node").items():
+            parts = [table[f"U{k}"][rows] for k in (1, 2, 3)]
+            motion = max(_largest(part) + _largest(-part) for part in parts)
+            own.append(NodeCurve(name.removeprefix("node_"), node, table, rows, motion))
+        sets.append(own)
+    return sets
+
+
+def choose_curves(sets: list[list[NodeCurve]]) -> list[NodeCurve]:
+    """Of each set that moves the node that moves most, then others up to six curves.
+
+    A node that is in several sets is drawn once where they have other nodes that move: small sets
+    choose first.
+    """
+    everything = sorted((one for own in sets for one in own), key=lambda one: -one.motion)
+    if not everything:
+        return []
+    moving = [one for one in everything if one.motion >= LEAST * everything[0].motion]
+    chosen: dict[int, NodeCurve] = {}
+    twice = []
+    for name in sorted({one.name for one in moving}, key=lambda n: _count(moving, n)):
+        own = [one for one in moving if one.name == name]
+        new = next((one for one in own if one.node not in chosen), None)
+        if new:
+            chosen[new.node] = new
+        else:
+            twice.append(own[0])
+    for one in moving:
+        if len(chosen) + len(twice) < MOST_CURVES:
+            chosen.setdefault(one.node, one)
+    return sorted([*chosen.values(), *twice], key=lambda one: (natural(one.name), one.node))
+
+
+def _count(curves: list[NodeCurve], name: str) -> int:
+    return sum(one.name == name for one in curves)
+
+
 def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:
     """Displacements of every *NODE PRINT in time, one row a direction, columns as of openings."""
-    curves = []
-    nodes = [name for name in results.tables() if name.startswith("node_")]
-    for name in nodes:
-        table, title = results.table(name), name.removeprefix("node_")
-        if "U1" not in table or len(np.unique(table["time"])) < 3:
-            continue
-        for node, rows in list(_curves_by(table, "node").items())[:MOST_CURVES]:
-            curves.append((f"{title}, node {node}", table, rows))
+    curves = choose_curves(_node_curves(results))
     if not curves:
         return []
-    columns = _columns(results, [table for _, table, _ in curves])
+    columns = _columns(results, [one.table for one in curves])
     figure, axes = new_figure(
         3, width=12.0 + 4.0 * (len(columns) - 1), row_height=2.2, columns=len(columns),
         sharex="col", squeeze=False,
     )  # fmt: skip
     for column, (kind, steps) in zip(axes.T, columns.items(), strict=True):
-        for label, table, rows in curves[:MOST_CURVES]:
-            shown = rows[np.isin(table["step"][rows], list(steps))]
-            for axis, direction in zip(column, "123", strict=True):
-                values = 1000.0 * table[f"U{direction}"][shown]
-                axis.plot(table["time"][shown], values, lw=1.0, label=label)
-        for axis in column:
-            axis.margins(x=0.0)
+        _node_panels(column, curves, Span(results, steps))
         column[0].set_title(f"Displacements relative to the base{', ' if kind else ''}{kind}")
         column[-1].set_xlabel("time of the deck" if kind == STATIC else "time [s]")
     for axis, direction in zip(axes[:, 0], "123", strict=True):
         axis.set_ylabel(f"U{direction} [mm]")
-    axes[0, -1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    axes[0, -1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.align_ylabels(axes[:, 0])
     return sheet.save(figure)
+
+
+def _node_panels(column, curves: list[NodeCurve], span: Span) -> None:
+    """The three directions of some steps."""
+    for number, one in enumerate(curves):
+        for axis, direction in zip(column, "123", strict=True):
+            time, moved = span.curve(one.table, one.rows, 1000.0 * one.table[f"U{direction}"])
+            axis.plot(
+                time, moved, lw=1.0, marker=_mark(len(time)), label=f"{one.name}, node {one.node}",
+                **_look(number),
+            )  # fmt: skip
+    for axis in column:
+        axis.margins(x=0.0)
 
 
 def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
     """Energies in time and the imbalance between them."""
     table = results.history("energy")
-    if len(table.get("time", ())) < 3:
+    energies = {name: _largest(np.abs(table[name])) for name in energy_names(table)}
+    largest = max(energies.values(), default=0.0)
+    if not largest > 0.0:
         return []
-    largest = max(np.abs(table[name]).max() for name in ("external", "kinetic", "strain"))
+    mark = _mark(len(table["time"]))
     scale, unit = (1e-6, "MJ") if largest > 1e5 else (1e-3, "kJ") if largest > 1e2 else (1.0, "J")
     figure, axes = new_figure(
         2, width=12.0, row_height=2.9, sharex=True, gridspec_kw={"height_ratios": (3, 1)}
     )
-    names = ("external", "strain", "kinetic", "damping", "friction", "fracture", "numerical")
-    shown = [n for n in names if np.abs(table[n]).max() > 1e-6 * largest]
-    for name, colour in zip(shown, COLOURS, strict=False):
-        axes[0].plot(table["time"], scale * table[name], color=colour, label=name)
+    shown = [name for name, size in energies.items() if size > LEAST * largest]
+    for number, name in enumerate(shown):
+        values = scale * table[name]
+        axes[0].plot(table["time"], values, marker=mark, label=name, **_look(number))
     axes[0].set_title("Energy balance")
     axes[0].set_ylabel(f"energy [{unit}]")
     axes[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    axes[1].plot(table["time"], 100.0 * table["error"], color=GREY)
+    axes[1].plot(table["time"], 100.0 * table["error"], color=GREY, marker=mark)
     axes[1].set_ylabel("imbalance [%]")
     axes[1].set_xlabel("time [s]")
     axes[1].margins(x=0.0)
@@ -134,18 +234,22 @@ def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
 def plot_damage_growth(results: SiResults, sheet: Sheet) -> list[Path]:
     """Damaged volumes, and the energy dissipated by cracks and crushing, in time."""
     table = results.history("damage")
-    if len(table.get("time", ())) < 3 or table["inelastic_volume"].max() <= 0.0:
+    if _largest(table.get("inelastic_volume", np.zeros(0))) <= 0.0:
         return []
+    mark = _mark(len(table["time"]))
     figure, axes = new_figure(2, width=12.0, row_height=2.9, sharex=True)
-    axes[0].plot(table["time"], table["inelastic_volume"], color=GREY, label="beyond elasticity")
+    volume = table["inelastic_volume"]
+    axes[0].plot(table["time"], volume, color=GREY, marker=mark, label="beyond elasticity")
     for percent, colour in zip((10, 50, 90), COLOURS, strict=False):
         axes[0].plot(
-            table["time"], table[f"volume_{percent}"], color=colour, label=f"damage ≥ {percent} %"
-        )
+            table["time"], table[f"volume_{percent}"], color=colour, marker=mark,
+            label=f"damage ≥ {percent} %",
+        )  # fmt: skip
     axes[0].set_title("Growth of damage in tension")
     axes[0].set_ylabel("volume [m³]")
     for name, colour in zip(("cracking", "crushing"), COLOURS, strict=False):
-        axes[1].plot(table["time"], 1.0e-3 * table[name], color=colour, label=name)
+        values = 1.0e-3 * table[name]
+        axes[1].plot(table["time"], values, color=colour, marker=mark, label=name)
     axes[1].set_ylabel("dissipated [kJ]")
     axes[1].set_xlabel("time [s]")
     for axis in axes:

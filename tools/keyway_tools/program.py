@@ -44,6 +44,10 @@ def given_program(path: Path | None) -> Path:
     return path.resolve()
 
 
+class DamagedFileError(ValueError):
+    """A file of results that is not whole."""
+
+
 def reason_of(error: Exception) -> str:
     """What a command says of an error: of one of the system the file and the reason."""
     if isinstance(error, OSError) and error.strerror and error.filename:

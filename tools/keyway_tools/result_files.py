@@ -13,6 +13,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .program import DamagedFileError
+
 Table = dict[str, np.ndarray]
 
 
@@ -21,11 +23,11 @@ def read_table(path: Path | str) -> Table:
     with Path(path).open(newline="", encoding="utf-8-sig") as file:
         rows = [row for row in csv.reader(file) if row]
     if not rows:
-        raise ValueError(f"{path}: empty, expected a header line")
+        raise DamagedFileError(f"{path}: empty, expected a header line")
     header = [name.strip() for name in rows[0]]
     for number, row in enumerate(rows[1:], 2):
         if len(row) != len(header):
-            raise ValueError(f"{path}:{number}: {len(row)} values, expected {len(header)}")
+            raise DamagedFileError(f"{path}:{number}: {len(row)} values, expected {len(header)}")
     columns = zip(*rows[1:], strict=True) if len(rows) > 1 else [()] * len(header)
     return {name: as_numbers(column) for name, column in zip(header, columns, strict=True)}
 
@@ -34,6 +36,25 @@ def natural(name: str) -> list[tuple[bool, int, str]]:
     """A key for sorting, by which JOINT2 comes before JOINT10."""
     words = re.findall(r"\d+|\D+", name)
     return [(not word.isdecimal(), int(word) if word.isdecimal() else 0, word) for word in words]
+
+
+def as_file_word(name: str) -> str:
+    """The name of a set or joint in the name of its table.
+
+    >>> as_file_word("FUGE Ü 1")
+    'FUGE____1'
+    """
+    return re.sub(rb"[^A-Za-z0-9_.-]", b"_", name.encode()).decode()
+
+
+def energy_names(table: Table) -> list[str]:
+    """The energies among the columns of a balance of energy, those of all decks first.
+
+    Decks with stages and with temperatures have more of them.
+    """
+    usual = ("external", "strain", "kinetic")
+    names = [name for name in table if name not in ("step", "increment", "time", "error")]
+    return [n for n in usual if n in names] + [n for n in names if n not in usual]
 
 
 def as_numbers(column: tuple[str, ...]) -> np.ndarray:
@@ -54,7 +75,7 @@ def load_json(path: Path | str) -> Any:
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
     except ValueError as error:
-        raise ValueError(f"{path} cannot be read, it is not whole: {error}") from None
+        raise DamagedFileError(f"{path} cannot be read, it is not whole: {error}") from None
 
 
 def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from .joint_faces import JointFaces, read_joint_faces
-from .result_files import Table, as_array, load_json, natural, read_table
+from .result_files import Table, as_array, as_file_word, load_json, natural, read_table
 
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
 ENVELOPE_NAMES = {
@@ -142,6 +142,12 @@ class Results:
     def table(self, name: str) -> Table:
         """Columns of the table JOB_NAME.csv."""
         return read_table(self.path(f"_{name}.csv"))
+
+    def joint_of_table(self, word: str) -> str:
+        """The joint of the table joint_WORD: other letters than a to z are '_' in its name."""
+        known = self.summary.get("joints", {}) if self.path(".json").exists() else {}
+        found = [name for name in known if as_file_word(name) == word]
+        return found[0] if len(found) == 1 else word
 
     def find(self, path: str) -> Any:
         """Value in the summary, as in find('steps.0.frequencies.2.hz')."""

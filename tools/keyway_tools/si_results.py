@@ -21,7 +21,8 @@ STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 6894.757293}  
 _LENGTH = re.compile(r"(?:[xyzUVA]|[UVA][123]|opening|slip[12]?|clearance|PENETRATION)$")
 _STRESS = re.compile(r"(?:t[n12]|S[123][123]|SP[123]|S[13](?:_POINT)?|pressure|water)$")
 _ENERGY = re.compile(
-    r"(?:external|kinetic|strain|damping|friction|fracture|crushing|numerical|cracking|created)$"
+    r"(?:external|kinetic|strain|damping|friction|fracture|crushing|numerical|cracking|created"
+    r"|stages|temperature)$"
 )
 _VOLUME = re.compile(r"(?:volume.*|inelastic_volume)$")
 

@@ -19,7 +19,6 @@ NO_RESULTS = (".log", ".out")
 SUMMARY_IGNORED = (
     "program.*",
     "machine.*",
-    "machine.*",
     "deck",
     "deck.*",
     "ledger",
@@ -32,7 +31,7 @@ SUMMARY_IGNORED = (
 )
 ENERGIES = {
     *("external", "kinetic", "strain", "damping", "friction", "fracture", "crushing"),
-    *("numerical", "work", "stored"),
+    *("numerical", "stages", "temperature", "work", "stored"),
 }
 # Numbers that are relative already: their differences are not divided.
 RATIOS = ("error", "residual", "largest_residual", "largest_energy_error")
@@ -201,7 +200,7 @@ def compare_arrays(a: np.ndarray, b: np.ndarray, measure: float) -> tuple[float,
     if not gaps.any():
         return 0.0, ""
     place = first_index(gaps == gaps.max())
-    size = float(gaps[place] / measure) if measure > 0 else np.inf
+    size = float(gaps[place]) / measure if measure > 0 else np.inf
     row = f" at {', '.join(map(str, place))}" if place else ""
     return size, f"{a[place]:.9g} before, {b[place]:.9g} after{row}; largest {measure:.3g}"
 

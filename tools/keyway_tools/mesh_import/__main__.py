@@ -20,6 +20,7 @@ from pathlib import Path
 from ..command import command
 from ..deck_text import id_lines, mesh_deck
 from ..mesh_quality import find_faults, report
+from ..option_types import above_zero
 from ..program import command_name
 from .build import Imported, import_mesh
 from .grouped_mesh import MeshError, deck_name, read_grouped_mesh
@@ -37,7 +38,9 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("file", type=Path, help="the mesh")
     parser.add_argument("-o", "--output", type=Path, help="mesh part of the deck (FILE_mesh.inp)")
     parser.add_argument("--element", choices=KINDS, default="C3D8", help="kind of solids (C3D8)")
-    parser.add_argument("--scale", type=float, default=1.0, help="of the coordinates: 0.001 for mm")
+    parser.add_argument(
+        "--scale", type=above_zero, default=1.0, help="of coordinates: 0.001 for mm"
+    )
     parser.add_argument(
         "--split", nargs="+", default=[], metavar="GROUP", help="faces that become JOINT8 elements"
     )

@@ -33,6 +33,8 @@ DIMENSIONS = {
     **dict.fromkeys(CORNERS, 3), **dict.fromkeys(FACES, 2), "line": 1, "vertex": 0
 }  # fmt: skip
 NUMBERED = ("gmsh:physical", "cell_tags", "medit:ref")  # data that number the groups of cells
+OWN_KINDS = {"C3D8B", "JOINT8", "IFACE4"}  # elements that other programs do not have
+ELEMENT = re.compile(r"\*ELEMENT\s*,(?:.*,)?\s*TYPE\s*=\s*(\w+)")
 
 
 class MeshError(ValueError):
@@ -67,11 +69,9 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
     if not scale > 0.0:
         raise MeshError(f"--scale {scale:g}: expected a factor above 0")
     notes = notes_of_deck(path) if path.suffix.lower() == ".inp" else []
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints what it does not know
-            mesh = meshio.read(path)
-    except (Exception, SystemExit) as fault:  # meshio raises errors of many kinds, and exits
-        raise MeshError(f"{path}: not a mesh that meshio reads ({fault})") from None
+    mesh = read_mesh(path)
+    if np.ndim(mesh.points) != 2:
+        raise MeshError(f"{path}: no nodes; expected a mesh of solids")
     refuse_cells(path, mesh)
     x = np.zeros((len(mesh.points), 3))
     x[:, : mesh.points.shape[1]] = scale * mesh.points
@@ -88,18 +88,43 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
     return found
 
 
+def read_mesh(path: Path) -> meshio.Mesh:
+    """The mesh of a file by meshio, which prints some reasons and exits. Raises MeshError."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(io.StringIO()):
+            return meshio.read(path)
+    except SystemExit:
+        lines = dict.fromkeys(line.strip() for line in said.getvalue().splitlines())
+        reason = (
+            "; ".join(line for line in lines if line)
+            or f"its contents are not those of {path.suffix}"
+        )
+    except KeyError as fault:  # an element names a node that is not there
+        reason = f"nothing has the number or name {fault.args[0] if fault.args else ''}"
+    except Exception as fault:  # meshio raises errors of many kinds
+        reason = str(fault) or type(fault).__name__
+    raise MeshError(f"{path}: not a mesh that meshio reads: {reason}")
+
+
 def notes_of_deck(path: Path) -> list[str]:
     """What is lost of a deck of Abaqus or CalculiX. Error: a deck with parts, of which one alone
-    would be read."""
-    words = {
-        line.partition(",")[0].strip("* \t\r\n").upper()
-        for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
-        if line.startswith("*") and not line.startswith("**")
-    }
+    would be read; a deck with elements of Keyway."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    cards = [
+        line.upper() for line in text.splitlines() if line.startswith("*") and line[:2] != "**"
+    ]
+    words = {card.partition(",")[0].strip("* \t\r\n") for card in cards}
     if words & {"PART", "INSTANCE", "ASSEMBLY"}:
         raise MeshError(
             f"{path}: a deck with parts and instances; expected a flat mesh: keyway reads such a "
             "deck itself, with its sets, surfaces and ties"
+        )
+    kinds = {found[1] for card in cards if (found := ELEMENT.match(card))}
+    if own := sorted(kinds & OWN_KINDS):
+        raise MeshError(
+            f"{path}: a deck with elements of Keyway ({', '.join(own)}); expected the mesh of "
+            "another program: keyway reads its own decks itself"
         )
     lost = [f"*{word}" for word in ("SURFACE", "TIE", "BOUNDARY") if word in words]
     if not lost:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
@@ -51,6 +52,8 @@ def _split_heading(path: Path, lines: list[str]) -> tuple[list[str], list[list[f
             if rows and not text.startswith(("#", "%", "!", "//", "*")):
                 raise RecordError(f"{path}:{number}: found '{text[:40]}'; expected numbers")
             heading.append(text)
+        elif not all(map(math.isfinite, row)):
+            raise RecordError(f"{path}:{number}: found '{text[:40]}'; expected finite numbers")
         elif rows and len(row) != len(rows[0]):
             raise RecordError(
                 f"{path}:{number}: {len(row)} numbers; expected {len(rows[0])} as in the rows above"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from ..motion_files import write_amplitude
@@ -12,12 +13,11 @@ from .treatment import same_times
 
 def is_plain(path: Path) -> bool:
     """Whether a file has one number a line, which a deck reads as it is."""
-    for line in path.read_text(errors="replace").splitlines():
-        try:
-            float(line)
-        except ValueError:
-            return False
-    return True
+    words = [w for line in path.read_text(errors="replace").splitlines() if (w := line.strip())]
+    try:
+        return bool(words) and all(math.isfinite(float(word)) for word in words)
+    except ValueError:
+        return False
 
 
 def check_number(components: int) -> None:

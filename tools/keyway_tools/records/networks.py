@@ -7,6 +7,7 @@ the scale factor are gal, and the mean is taken off.
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
@@ -27,13 +28,19 @@ FORMAT = re.compile(r"(\d+)\s*[FE]\s*(\d+)\.(\d+)", re.IGNORECASE)
 CHANNEL = re.compile(r"\bCh(?:an|annel)?\s*\.?\s*(\d+)\s*:?\s*([\w .-]{0,12})", re.IGNORECASE)
 COSMOS_INTERVAL = 62  # number of the real header with the time between values [ms]
 LONGEST_NAME = 12  # of the direction of a PEER record
+NO_NUMBER = re.compile(
+    r"nan|inf|\*\*", re.IGNORECASE
+)  # also a number that its field was too narrow for
 MOST_HEADERS = 60  # lines of a channel above its values
 
 
 def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> np.ndarray:
     """The first numbers of some lines, in columns of a width where it is known."""
     values: list[float] = []
+    if count < 2:
+        raise RecordError(f"{path}: its header says {count} values; expected a record")
     for line in lines:
+        _refuse_no_number(path, line)
         if width:
             text = line.rstrip("\n")
             words = [text[k : k + width] for k in range(0, len(text), width)]
@@ -44,9 +51,28 @@ def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> n
             values += [float(word.replace("D", "e").replace("d", "e")) for word in words]
         except ValueError:
             raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected numbers") from None
+        if not all(map(math.isfinite, values)):
+            raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected finite numbers")
         if len(values) >= count:
             return np.array(values[:count])
     raise RecordError(f"{path}: {len(values)} values; its header says {count}")
+
+
+def _refuse_no_number(path: Path, line: str) -> None:
+    """Error: a word in place of a number, which a search for numbers would leave out."""
+    if NO_NUMBER.search(line):
+        raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected finite numbers")
+
+
+def _interval(path: Path, text: str) -> float:
+    """The time between values [s] of a header."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf:
+        raise RecordError(f"{path}: time between values '{text}'; expected a number above 0")
+    return value
 
 
 def read_at2(path: Path, lines: list[str], unit: str | None) -> list[Record]:
@@ -61,7 +87,7 @@ def read_at2(path: Path, lines: list[str], unit: str | None) -> list[Record]:
     name = lines[1].split(",")[-1].strip()
     if "," not in lines[1] or len(name) > LONGEST_NAME:
         name = path.stem
-    return [Record(FACTORS[unit] * values, float(found[2]), name, path, "PEER AT2", unit)]
+    return [Record(FACTORS[unit] * values, _interval(path, found[2]), name, path, "PEER AT2", unit)]
 
 
 def read_cosmos(path: Path, lines: list[str], unit: str | None) -> list[Record]:
@@ -91,10 +117,11 @@ def _cosmos_interval(path: Path, heading: list[str]) -> float:
         if found:
             layout = FORMAT.search(line)
             width = int(layout[2]) if layout else None
-            return (
-                1.0e-3
-                * numbers_in(heading[number + 1 :], int(found[1]), width, path)[COSMOS_INTERVAL - 1]
-            )
+            count = int(found[1])
+            if count < COSMOS_INTERVAL:
+                raise RecordError(f"{path}: {count} real headers; expected {COSMOS_INTERVAL}")
+            values = numbers_in(heading[number + 1 :], count, width, path)
+            return 1.0e-3 * _interval(path, f"{values[COSMOS_INTERVAL - 1]:g}")
     raise RecordError(f"{path}: no real header; expected '100 Real-header values follow'")
 
 
@@ -109,7 +136,7 @@ def read_csmip(path: Path, lines: list[str], unit: str | None) -> list[Record]:
         values = numbers_in(lines[number + 1 :], int(found[1]), width, path)
         chosen = choose_unit(path, unit_named_in(found[3]), unit, np.abs(values).max())
         name = _channel_of(lines[max(start, number - MOST_HEADERS) : number], len(records) + 1)
-        step = float(found[2])
+        step = _interval(path, found[2])
         records.append(Record(FACTORS[chosen] * values, step, name, path, "CSMIP", chosen))
         start = number + 1
     return records
@@ -128,17 +155,20 @@ def read_kyoshin(path: Path, lines: list[str], unit: str | None) -> list[Record]
     """A file of K-NET or KiK-net."""
     facts = {line[:18].strip(): line[18:].strip() for line in lines[:17]}
     try:
-        frequency = float(NUMBER.search(facts["Sampling Freq(Hz)"])[0])
+        interval = 1.0 / float(NUMBER.search(facts["Sampling Freq(Hz)"])[0])
         factor, counts = (float(NUMBER.search(s)[0]) for s in facts["Scale Factor"].split("/"))
+        scale = factor / counts
         direction = facts["Dir."]
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, ZeroDivisionError):
         raise RecordError(
             f"{path}: expected Sampling Freq(Hz), Dir. and Scale Factor in the first 17 lines"
         ) from None
     choose_unit(path, "CM/S2", unit, 0.0)
+    for line in lines[17:]:
+        _refuse_no_number(path, line)
     text = [NUMBER.findall(line) for line in lines[17:]]
-    values = np.array([float(word) for words in text for word in words]) * factor / counts
+    values = np.array([float(word) for words in text for word in words]) * scale
     if values.size < 2:
         raise RecordError(f"{path}: no values after the first 17 lines")
     values = 0.01 * (values - values.mean())
-    return [Record(values, 1.0 / frequency, direction, path, "K-NET", "CM/S2")]
+    return [Record(values, interval, direction, path, "K-NET", "CM/S2")]

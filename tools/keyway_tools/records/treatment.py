@@ -14,6 +14,7 @@ from .record import Record, RecordError
 
 TAPER = 0.05  # of the duration, at both ends of a corrected record
 LARGEST_FRACTION = 1000
+MOST_VALUES = 1e6  # of a record: files of some 20 MB
 
 
 def cut(record: Record, start: float, end: float) -> Record:
@@ -32,6 +33,12 @@ def resample(record: Record, dt: float) -> Record:
     if abs(dt / record.dt - 1.0) < 1e-9:
         return record
     duration = record.dt * (record.acceleration.size - 1)
+    longest = min(duration, LARGEST_FRACTION * record.dt)
+    if not duration / MOST_VALUES <= dt <= longest:
+        raise RecordError(
+            f"{record.source}: {dt:g} s between values; expected {duration / MOST_VALUES:g} to "
+            f"{longest:g} s"
+        )
     if dt < record.dt:
         times = dt * np.arange(int(duration / dt + 1e-9) + 1)
         own = record.dt * np.arange(record.acceleration.size)
@@ -56,7 +63,12 @@ def settle(record: Record) -> Record:
     edge = np.minimum(time, 1.0 - time) / TAPER
     shape = 0.5 * (1.0 - np.cos(np.pi * np.minimum(1.0, edge)))
     tapered = record.acceleration * shape
-    return record.with_values(correct_baseline(tapered, record.dt, shape))
+    try:
+        return record.with_values(correct_baseline(tapered, record.dt, shape))
+    except np.linalg.LinAlgError:
+        raise RecordError(
+            f"{record.source}: a record of {count} values is too short for --baseline"
+        ) from None
 
 
 def factor_to_peak(horizontal: list[Record], peak: float) -> float:
@@ -76,7 +88,16 @@ def factor_to_spectrum(
     target over a range of periods in the same way). `target` is that over its peak [g].
     """
     at = np.geomspace(*periods, 60)
-    spectra = [np.log(response_spectrum(r.acceleration, r.dt, at)) for r in horizontal]
+    step = max(record.dt for record in horizontal)
+    if periods[0] < step:
+        raise RecordError(
+            f"--fit: periods from {periods[0]:g} s; expected at least the time between values, "
+            f"{step:g} s"
+        )
+    spectra = [response_spectrum(r.acceleration, r.dt, at) for r in horizontal]
+    if min(spectrum.min() for spectrum in spectra) <= 0.0:
+        raise RecordError(f"--fit: the spectrum is zero at periods up to {periods[1]:g} s")
+    spectra = [np.log(spectrum) for spectrum in spectra]
     return float(np.exp(np.mean(np.log(peak * GRAVITY * target(at)) - np.mean(spectra, axis=0))))
 
 

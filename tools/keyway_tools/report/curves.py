@@ -6,20 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ..result_files import energy_names
 from ..si_results import SiResults
 
 MOST_POINTS = 2000  # of a curve
 MOST_CURVES = 6
-ENERGIES = (
-    "external",
-    "strain",
-    "kinetic",
-    "damping",
-    "friction",
-    "fracture",
-    "crushing",
-    "numerical",
-)
 
 
 def curve(name: str, time: np.ndarray, values: np.ndarray) -> dict[str, Any]:
@@ -52,7 +43,7 @@ def _joint_plots(results: SiResults) -> list[dict[str, Any]]:
     """Largest opening and slip of each joint; histories of points that the deck prints."""
     found = []
     histories = {name: results.history(f"joints/{name}") for name in results.joint_names()}
-    histories = {n: table for n, table in histories.items() if len(table.get("time", ())) > 2}
+    histories = {n: table for n, table in histories.items() if len(table.get("time", ()))}
     for key in ("opening", "slip"):
         curves = [curve(n, table["time"], 1e3 * table[key]) for n, table in histories.items()]
         found.append(_plot(f"Largest {key} of joints", "mm", curves))
@@ -63,7 +54,8 @@ def _joint_plots(results: SiResults) -> list[dict[str, Any]]:
             curve(f"point {point}", table["time"][rows], 1e3 * table["opening"][rows])
             for point, rows in points.items()
         ]
-        found.append(_plot(f"Opening of joint {name.removeprefix('joint_')}", "mm", curves))
+        title = f"Opening of joint {results.joint_of_table(name.removeprefix('joint_'))}"
+        found.append(_plot(title, "mm", curves))
     return found
 
 
@@ -72,7 +64,7 @@ def _displacement_plots(results: SiResults) -> list[dict[str, Any]]:
     found = []
     for name in (name for name in results.tables() if name.startswith("node_")):
         table = results.table(name)
-        if "U1" not in table or len(np.unique(table["time"])) < 3:
+        if not len(table.get("U1", ())):
             continue
         table["size"] = np.sqrt(sum(table[f"U{k}"] ** 2 for k in (1, 2, 3)))
         curves = [
@@ -87,28 +79,28 @@ def _displacement_plots(results: SiResults) -> list[dict[str, Any]]:
 
 def _most(table: dict[str, np.ndarray], key: str, column: str) -> dict[int, np.ndarray]:
     """Rows of the nodes or points with the largest values of a column."""
-    if len(table.get(key, ())) == 0:
+    if len(table.get(column, ())) == 0:
         return {}
     rows = {int(n): np.flatnonzero(table[key] == n) for n in np.unique(table[key])}
-    order = sorted(rows, key=lambda n: -np.nanmax(table[column][rows[n]]))
-    return {n: rows[n] for n in order[:MOST_CURVES] if len(rows[n]) > 2}
+    values = np.nan_to_num(table[column], nan=-np.inf)  # no value where a joint is not there
+    order = sorted(rows, key=lambda n: -values[rows[n]].max())
+    return {n: rows[n] for n in order[:MOST_CURVES]}
 
 
 def _energy_plot(results: SiResults) -> dict[str, Any] | None:
     table = results.history("energy")
-    if len(table.get("time", ())) < 3:
-        return None
-    largest = max(np.abs(table[name]).max() for name in ENERGIES if name in table)
+    energies = {name: np.abs(table[name]).max(initial=0.0) for name in energy_names(table)}
+    largest = max(energies.values(), default=0.0)
     if not largest > 0.0:
         return None
     scale, unit = (1e-6, "MJ") if largest > 1e5 else (1e-3, "kJ") if largest > 1e2 else (1.0, "J")
-    shown = [n for n in ENERGIES if n in table and np.abs(table[n]).max() > 1e-6 * largest]
+    shown = [name for name, size in energies.items() if size > 1e-6 * largest]
     return _plot("Energies", unit, [curve(n, table["time"], scale * table[n]) for n in shown])
 
 
 def _damage_plot(results: SiResults) -> dict[str, Any] | None:
     table = results.history("damage")
-    if len(table.get("time", ())) < 3 or table["inelastic_volume"].max() <= 0.0:
+    if table.get("inelastic_volume", np.zeros(0)).max(initial=0.0) <= 0.0:
         return None
     names = {"inelastic_volume": "beyond elasticity"}
     names |= {f"volume_{k}": f"damage of {k} % or more" for k in (10, 50, 90)}

@@ -161,7 +161,7 @@
   const plots = [];
   const curves = (box, plot) => {
     const layout = { title: { text: plot.title, x: 0, font: { size: 16 } }, margin: { l: 70, r: 10, t: 40, b: 45 }, xaxis: { title: { text: "time [s]" } }, yaxis: { title: { text: plot.unit } }, legend: { orientation: "v" }, hovermode: "x unified", showlegend: true };
-    plots.push(Plotly.newPlot(box, plot.curves.map(one => ({ ...one, mode: "lines", line: { width: 1.4 } })), layout, { responsive: true, displaylogo: false }));
+    plots.push(Plotly.newPlot(box, plot.curves.map(one => ({ ...one, mode: one.x.length < 3 ? "lines+markers" : "lines", line: { width: 1.4 } })), layout, { responsive: true, displaylogo: false }));
   };
   const bars = (box, rows) => {
     const ordered = [...rows].reverse();

@@ -12,6 +12,8 @@ import numpy as np
 
 MONTHS = 12.0
 WARMEST = 6.5  # mid July
+SAMPLES = 201  # depths at which the coldest water is looked for
+FREEZING = 0.0  # of water [deg C]
 
 
 def wave(month: np.ndarray, latest: np.ndarray | float) -> np.ndarray:
@@ -91,6 +93,13 @@ class Water:
         """Temperature at a depth [m]."""
         phase = self.warmest + self.lag_at(depth)
         return self.mean_at(depth) + self.amplitude_at(depth) * wave(month, phase)
+
+    def coldest(self) -> tuple[float, float]:
+        """The lowest temperature at any depth and time, and its depth [m]."""
+        depth = np.linspace(0.0, self.depth, SAMPLES)
+        lowest = self.mean_at(depth) - self.amplitude_at(depth)
+        place = int(lowest.argmin())
+        return float(lowest[place]), float(depth[place])
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,9 @@ from ..mesh_data import BRICK_FACES
 from ..study.deck_cards import Deck, fields_of, read_deck
 from ..study.mesh_sets import MeshSets, element_rows, read_sets
 
+FACE_NAMES = [f"S{number}" for number in range(1, len(BRICK_FACES) + 1)]
+CLOSE = 1e-9  # of the dam's size: round-off of coordinates
+
 
 @dataclass(frozen=True)
 class Dam:
@@ -54,6 +57,12 @@ def read_dam(path: Path, dam: str, upstream: str, downstream: str) -> Dam:
     numbers = np.unique(np.concatenate([np.array(nodes) for nodes in elements.values()]))
     position = {int(number): place for place, number in enumerate(numbers)}
     faces = [_face(path, deck, sets, name, elements) for name in (upstream, downstream)]
+    common = {frozenset(face) for face in faces[0]} & {frozenset(face) for face in faces[1]}
+    if common:
+        names = f"'{upstream}' (upstream) and '{downstream}' (downstream)"
+        raise ValueError(
+            f"{path}: {len(common)} faces belong to {names}; expected the two opposite faces"
+        )
     return Dam(
         numbers,
         np.array([sets.nodes[int(number)] for number in numbers]),
@@ -85,8 +94,11 @@ def _face(
     found: list[list[int]] = []
     if card is not None:
         for line in card.lines:
-            label, face = (item.strip() for item in fields_of(line)[:2])
-            corners = BRICK_FACES[int(face.upper().removeprefix("S")) - 1]
+            label, face = (item.strip() for item in [*fields_of(line), ""][:2])
+            if face.upper() not in FACE_NAMES:
+                known = f"{', '.join(FACE_NAMES[:-1])} or {FACE_NAMES[-1]}"
+                raise ValueError(f"{path}: surface '{name}': found '{line}'; expected {known}")
+            corners = BRICK_FACES[FACE_NAMES.index(face.upper())]
             own = [e for e in sets.elements_of(label) if e in elements]
             found += [[elements[e][k] for k in corners] for e in own]
     elif name.upper() in sets.node_sets:
@@ -108,6 +120,24 @@ def place_nodes(dam: Dam) -> Place:
     depth = np.linalg.norm(dam.x - near, axis=1)
     rest = np.linalg.norm(dam.x - far, axis=1)
     return Place(depth, depth + rest, near[:, 2], far[:, 2])
+
+
+def nodes_without_thickness(dam: Dam, place: Place) -> np.ndarray:
+    """Positions of the nodes at which the faces meet.
+
+    Raises ValueError where one of them is below the crest: then the faces are not opposite ones.
+    """
+    size = float(np.ptp(dam.x, axis=0).max())
+    found = np.flatnonzero(place.thickness <= CLOSE * size)
+    low = found[dam.x[found, 2] < dam.x[:, 2].max() - CLOSE * size]
+    if len(low):
+        x, y, z = dam.x[low[0]]
+        raise ValueError(
+            f"{len(low)} nodes lie on both faces, as node {dam.numbers[low[0]]} at ({x:.5g}, "
+            f"{y:.5g}, {z:.5g}) m: the dam has no thickness there; expected --upstream and "
+            "--downstream to be opposite faces, which meet at the crest at most"
+        )
+    return found
 
 
 def first_layer(dam: Dam, place: Place) -> float:

@@ -1,0 +1,53 @@
+"""Options of tools/make_dam.py that would make a deck that the program refuses."""
+
+from __future__ import annotations
+
+import argparse
+
+MOST_PRINTED = 2**31 - 1  # integers of a deck
+
+
+def check_deck_options(chosen: argparse.Namespace) -> None:
+    """Words, constants and times of the deck. Raises ValueError."""
+    _check_words(chosen)
+    _check_materials(chosen)
+    _check_damping(*chosen.damping)
+    if chosen.motion and chosen.increment > chosen.duration:
+        raise ValueError(
+            f"--increment {chosen.increment:g}: expected at most the duration, "
+            f"{chosen.duration:g} s"
+        )
+    if chosen.picture_every > MOST_PRINTED:
+        raise ValueError(f"--picture-every {chosen.picture_every}: expected up to {MOST_PRINTED}")
+
+
+def _check_words(chosen: argparse.Namespace) -> None:
+    """The title is a line of the deck, a note a paragraph of its header."""
+    if len(chosen.title.splitlines()) > 1 or chosen.title.lstrip().startswith("*"):
+        raise ValueError(f"--title {chosen.title!r}: expected one line that begins without '*'")
+    for note in chosen.note:
+        head, _, text = note.partition(": ")
+        if not head.strip() or not text.strip():
+            raise ValueError(f"--note '{note}': expected the form 'Head: text'")
+
+
+def _check_materials(chosen: argparse.Namespace) -> None:
+    """Constants of concrete and rock."""
+    for name in ("concrete", "rock"):
+        given = getattr(chosen, name)
+        modulus, ratio, *density = given
+        found = f"--{name} {' '.join(f'{value:g}' for value in given)}"
+        if modulus <= 0.0 or not -1.0 < ratio < 0.5 or min(density, default=0.0) < 0.0:
+            rest = ", RHO of 0 or more" if density else ""
+            raise ValueError(f"{found}: expected E above 0, NU in -1..0.5{rest}")
+        if (chosen.motion or chosen.modes) and density == [0.0]:
+            raise ValueError(f"{found}: expected RHO above 0 with --motion or --modes")
+
+
+def _check_damping(ratio: float, first: float, second: float) -> None:
+    """The limits of *DAMPING (keywords.md)."""
+    found = f"--damping {ratio:g} {first:g} {second:g}"
+    if ratio >= 1.0:
+        raise ValueError(f"{found}: expected a RATIO of 0 or more and below 1")
+    if not 0.0 < first < second:
+        raise ValueError(f"{found}: expected frequencies above 0, F1 below F2")
