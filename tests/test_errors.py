@@ -23,6 +23,57 @@ def test_bad_deck(case: Case, program_path: Path, tmp_path: Path) -> None:
         assert NAME.search(line), f"no page of keyway --explain fits: {line}"
 
 
+# Cases whose words could be those of another kind, and their kinds.
+KINDS = {
+    "material_in_an_instance": "outside-its-place",
+    "keywords_below_the_last_step": "outside-its-place",
+    "dynamic_explicit": "not-available",
+    "static_stabilize": "not-available",
+    "static_direct_with_a_value": "wrong-value",
+    "set_generate": "wrong-value",
+    "print_of_81_letters": "wrong-value",
+    "warning_heading_without_text": "missing-value",
+    "warning_nothing_acts": "incomplete-deck",
+}
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_kind_of_a_message(name: str, program_path: Path, tmp_path: Path) -> None:
+    case = next(case for case in read_tables() if case.name == name)
+    lines = headlines(case.run(program_path, tmp_path).stderr)
+    assert any(line.endswith(f"[{KINDS[name]}]") for line in lines)
+
+
+@pytest.mark.parametrize(
+    "content, says",
+    [
+        (
+            "*NODE\n1, 0., 0., 0.\n".encode("utf-16"),
+            "it is in UTF-16, or no text; save it as UTF-8",
+        ),
+        (b"*NODE\r1, 0., 0., 0.\r", "its lines end with CR alone; save it with the line ends LF"),
+    ],
+    ids=["utf-16", "cr"],
+)
+def test_a_file_that_is_no_deck(content, says, program_path: Path, tmp_path: Path) -> None:
+    (tmp_path / "a.inp").write_bytes(content)
+    command = [str(program_path.resolve()), "--check", "a.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"a.inp: cannot read 'a.inp': {says}")
+    assert done.stderr.count("\n") == 1
+
+
+def test_files_include_each_other_too_deep(program_path: Path, tmp_path: Path) -> None:
+    for k in range(103):
+        (tmp_path / f"{k}.inp").write_text(f"*INCLUDE, INPUT={k + 1}.inp\n")
+    command = [str(program_path.resolve()), "--check", "0.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "the file is below more than 100 levels of *INCLUDE; expected at most" in done.stderr
+    assert "includes itself" not in done.stderr
+
+
 def test_every_name_has_a_page(program_path: Path) -> None:
     listed = subprocess.run([program_path, "--explain"], capture_output=True, text=True).stdout
     names = re.findall(r"^([a-z][a-z0-9-]*) ", listed, re.MULTILINE)[:-1]  # `keyway --explain ..`

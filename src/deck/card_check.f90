@@ -70,6 +70,7 @@ contains
     type(keyword), intent(in) :: spec
     type(diagnostic_list), intent(inout) :: faults
     logical, intent(out) :: is_right !< no fault was found
+    logical :: has_unknown_choice
     integer :: num_before
     num_before = faults%num_errors
     the_card%spec = spec
@@ -77,10 +78,12 @@ contains
       the_card%spec = spec_of_variant(spec, single_blanks(the_card%word(spec%chooser)))
     end if
     if (spec%asks_for_output) call complete_names(the_card)
-    call check_given_parameters(the_card, faults)
+    call check_given_parameters(the_card, faults, has_unknown_choice)
     call check_required_parameters(the_card, faults)
-    call check_line_count(the_card, faults)
-    if (.not. spec%checks_own_data) call check_lines(the_card, faults)
+    if (.not. has_unknown_choice) then
+      call check_line_count(the_card, faults)
+      if (.not. spec%checks_own_data) call check_lines(the_card, faults)
+    end if
     is_right = faults%num_errors == num_before
   end subroutine check_card
 
@@ -106,11 +109,13 @@ contains
   end subroutine complete_names
 
   !> Checks that every given parameter is known and has a valid value.
-  subroutine check_given_parameters(the_card, faults)
+  subroutine check_given_parameters(the_card, faults, has_unknown_choice)
     type(card), intent(in) :: the_card
     type(diagnostic_list), intent(inout) :: faults
+    logical, intent(out) :: has_unknown_choice !< the data lines may then have another meaning
     character(:), allocatable :: problem, nearest
     integer :: i, j
+    has_unknown_choice = .false.
     do i = 1, size(the_card%parameters)
       associate (given => the_card%parameters(i))
         j = position_of(the_card%spec, given%name)
@@ -123,7 +128,7 @@ contains
             call the_card%ignore(faults, given%name//' has no effect here')
           else if (wanted%kind == kind_flag) then
             if (given%has_value) call the_card%fault_parameter( &
-              faults, given%name, given%name//' takes no value', expected_in(wanted))
+              faults, given%name, given%name//' takes no value', given%name//' alone')
           else if (given%value_first > given%value_last) then
             if (wanted%may_be_bare) cycle
             call the_card%fault_parameter(faults, given%name, given%name//' has no value', &
@@ -132,6 +137,7 @@ contains
             call check_word(the_card%text(given%name), wanted, problem, nearest)
             if (len(problem) > 0) call the_card%fault_parameter( &
               faults, given%name, given%name//': '//problem, expected_in(wanted), nearest)
+            if (wanted%rules_lines .and. len(problem) > 0) has_unknown_choice = .true.
           end if
         end associate
       end associate

@@ -4,8 +4,9 @@ module deck_file
   use process_limits, only: why_no_file
   implicit none
   private
-  public :: load_file, path_beside, first_letter
+  public :: load_file, path_beside, first_letter, why_no_deck
 
+  integer, parameter :: num_looked_at = 4096 !< letters that show the encoding
   character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8
 
 contains
@@ -45,6 +46,19 @@ contains
     first_letter = 1
     if (index(text(:min(3, len(text))), byte_order_mark) == 1) first_letter = 4
   end function first_letter
+
+  !> Why the bytes of a file are no text of a deck, with the remedy; '' for a text.
+  pure function why_no_deck(text) result(reason)
+    character(*), intent(in) :: text
+    character(:), allocatable :: reason
+    reason = ''
+    if (index(text(:min(len(text), num_looked_at)), achar(0)) > 0) then
+      reason = 'it is in UTF-16, or no text; save it as UTF-8'
+    else if (index(text, achar(13)) > 0 .and. index(text, achar(10)) == 0) then
+      if (index(text, achar(13)) == len(text)) return ! one line
+      reason = 'its lines end with CR alone; save it with the line ends LF or CR LF'
+    end if
+  end function why_no_deck
 
   !> The message of the run-time library without the name of the file.
   pure function cause(message) result(reason)

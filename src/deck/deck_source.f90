@@ -1,10 +1,11 @@
 !> The lines of a deck with all included files, without blank lines and comments.
 module deck_source
-  use deck_file, only: first_letter, load_file, path_beside
+  use deck_file, only: first_letter, load_file, path_beside, why_no_deck
   use deck_words, only: is_blank, next_word, split_parameter
   use diagnostics, only: diagnostic_list, place, severity_error
   use file_identity, only: is_same_file
   use parse_text, only: upper_case, without_blanks
+  use write_text, only: as_text
   implicit none
   private
   public :: source_text, source_file, source_line, read_source, spot_in_source
@@ -75,7 +76,13 @@ contains
     integer :: file, i, num_heads
     call find_or_load(path, named_at, source, faults, file)
     if (file == 0) return
-    if (any(parents == file) .or. size(parents) > deepest) then
+    if (size(parents) > deepest) then
+      call faults%add(severity_error, named_at, 'the file is below more than '// &
+                      as_text(deepest)//' levels of *INCLUDE', &
+                      'at most '//as_text(deepest)//' levels')
+      return
+    end if
+    if (any(parents == file)) then
       call faults%add(severity_error, named_at, 'the file includes itself', &
                       'files that do not include each other')
       return
@@ -113,6 +120,7 @@ contains
     end do
     file = 0
     call load_file(path, new%text, reason)
+    if (len(reason) == 0) reason = why_no_deck(new%text)
     if (len(reason) > 0) then
       call faults%add(severity_error, named_at, "cannot read '"//path//"': "//reason)
       return

@@ -18,6 +18,8 @@ contains
     type(field), intent(in) :: described
     character(:), allocatable :: text
     text = text_or_nothing(described%meaning)
+    if (index(text, ';') > 0) text = text(:index(text, ';') - 1)
+    if (index(text, 'of Abaqus') == 1 .or. index(text, 'of CalculiX') == 1) text = ''
     if (described%kind == kind_choice .and. len(text) > longest_meaning) text = ''
     if (len(text) > 0) text = text//', '
     text = text//kind_in_words(described)

@@ -36,6 +36,7 @@ module keyword_spec
     logical :: excludes_lowest = .false., excludes_highest = .false. !< open range
     logical :: may_be_bare = .false. !< a parameter that may stand without a value
     logical :: is_checked_later = .false. !< the handler checks the value
+    logical :: rules_lines = .false. !< an unknown choice leaves open what the data lines hold
     logical :: has_no_effect = .false. !< of other programs, with any value; noted as ignored input
   end type field
 

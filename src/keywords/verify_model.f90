@@ -69,7 +69,8 @@ contains
     character(:), allocatable :: others
     integer :: corner
     others = ''
-    if (num_odd > 1) others = '; also '//as_text(num_odd - 1)//' more elements'
+    if (num_odd > 1) others = '; also '//as_text(num_odd - 1)//' more element'
+    if (num_odd > 2) others = others//'s'
     associate (spot => model%element_origin(e), mesh => model%problem%mesh)
       corner = corner_fault(mesh%x(:, mesh%nodes(:, e)))
       call model%cards(spot%card)%warn(faults, 'element '//as_text(mesh%element_id(e))// &

@@ -206,7 +206,10 @@ def test_summary(results: Results):
     assert [step["procedure"] for step in summary["steps"]] == ["static", "dynamic", "frequency"]
     assert results.find("steps.1.energy.error") == pytest.approx(3e-4)
     assert results.find("steps.2.frequencies.1.hz") == 5.0
-    assert "step dead weight has no field V; it is not written" in summary["warnings"]
+    assert (
+        "static steps have no field V: job.h5 and the VTK series are without it there"
+        in summary["warnings"]
+    )
     assert {part["name"] for part in summary["ledger"]["parts"]} >= {"write CSV", "write VTK"}
 
 

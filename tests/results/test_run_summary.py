@@ -160,3 +160,31 @@ def read_all(descriptor: int) -> str:
     except OSError:  # the other end is closed
         pass
     return b"".join(parts).decode()
+
+
+def test_a_gap_of_the_mesh_that_closes_is_told(tmp_path, program_path):
+    """A block 1e-4 m above another one is pushed onto it in the first increment."""
+    deck = Path(__file__).resolve().parents[1] / "errors" / "base" / "contact.inp"
+    text = re.sub(r"^(1[1-4], .*), 1\.$", r"\1, 1.0001", deck.read_text(), flags=re.MULTILINE)
+    push = "".join(f"{node}, 1, 2\n{node}, 3, 3, -2e-4\n" for node in range(15, 19))
+    text = text.replace("*DLOAD\n", f"*BOUNDARY\n{push}*DLOAD\n")
+    (tmp_path / "gap.inp").write_text(text)
+    command = [program_path, "-j", "1", "-o", tmp_path, tmp_path / "gap.inp"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    assert "CONTACT1: open by up to 1e-4 in the mesh, closed at the end of all" in done.stderr
+    assert "never open" not in done.stderr
+
+
+def test_fields_that_static_steps_lack_are_told_once(tmp_path, program_path):
+    deck = Path(__file__).resolve().parents[1] / "errors" / "base" / "block.inp"
+    text = deck.read_text().replace("*END STEP", "*NODE FILE\nU, V\n*END STEP")
+    step = "*STEP\n*STATIC\n*DLOAD, OP=NEW\nDAM, GRAV, 5., 0., 0., -1.\n*END STEP\n"
+    dynamic = "*STEP\n*DYNAMIC\n0.01, 0.02\n*END STEP\n"
+    (tmp_path / "steps.inp").write_text(text + step + dynamic)
+    command = [program_path, "-j", "1", "-o", tmp_path, tmp_path / "steps.inp"]
+    subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    warnings = json.loads((tmp_path / "steps.json").read_text(encoding="utf-8"))["warnings"]
+    about_v = [text for text in warnings if "field V" in text]
+    assert about_v == [
+        "static steps have no field V: job.h5 and the VTK series are without it there"
+    ]

@@ -1,5 +1,7 @@
 """Smallest increments, and what the message names where an increment has no equilibrium."""
 
+import re
+
 import pytest
 from concrete_decks import Bar, paper_concrete, pull
 from joint_decks import Block, static, weight
@@ -42,6 +44,30 @@ def test_message_names_iterations(keyway):
     message = keyway(deck, code=1).json["message"]
     assert "leave DIRECT out" in message
     assert "or allow more than ITERATIONS=1 (*CONTROLS)" in message
+
+
+def test_message_names_the_criterion_that_is_not_met(keyway):
+    """RESIDUAL=1 is met by any iterate; one correction of a cracking bar is more than 1e-9."""
+    controls = "*CONTROLS, ITERATIONS=1, TANGENT=CONSISTENT, RESIDUAL=1, INCREMENT=1e-9\n"
+    deck = Bar(paper_concrete()).deck(pull([1e-3], dt=0.5, controls=controls))
+    message = keyway(deck, code=1).json["message"]
+    assert re.search(
+        r"the last correction is \S+ of the increment \(tolerance 1.00E-09, \*CONTROLS, "
+        r"INCREMENT; residual \S+ is within its tolerance\) after 1 iteration with",
+        message,
+    )
+    assert "or name a larger INCREMENT (*CONTROLS)" in message
+
+
+def test_message_names_a_residual_below_round_off(keyway):
+    """Forces of 1e4 N on joints of 1e12 Pa/m cannot balance to 1e-15 of them in 16 digits."""
+    controls = "*CONTROLS, PRECISION=SINGLE, RESIDUAL=1e-15, INCREMENT=1e-15\n"
+    push = "*CLOAD\nTOP, 1, 300.\n"
+    block = {"law": "KN=1e12, FRICTION=0.3", "counts": (3, 3, 3), "meshes": (2, 2)}
+    message = message_of(keyway, static(weight() + controls + push, "0.5, 1"), **block)
+    assert re.search(r"residual \S+ \(tolerance 1.00E-15, \*CONTROLS, RESIDUAL\) after", message)
+    assert "; name PRECISION=DOUBLE, or name a larger RESIDUAL (*CONTROLS)" in message
+    assert "ITERATIONS" not in message
 
 
 def test_message_names_the_smallest_increment(keyway):

@@ -121,6 +121,8 @@ contains
       outcome%gives_up = inner%gives_up
       outcome%worst_point = inner%worst_point
       outcome%residual = inner%residual
+      outcome%correction = inner%correction
+      outcome%unmet = inner%unmet
       now%is_lost = .not. inner%has_converged
       if (allocated(error) .or. now%is_lost) return
       now%moved = norm(task%x - last_x)

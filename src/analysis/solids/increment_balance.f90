@@ -52,6 +52,7 @@ contains
     last = self%residual
     self%residual = norm(unbalance)/max(reference, tiny(1.0_rk))
     outcome%residual = self%residual
+    outcome%tolerance = self%tolerance
     outcome%has_converged = self%residual <= self%tolerance
     self%is_refined = .not. outcome%has_converged .and. self%share > tightest &
                       .and. self%residual < useful_pass*last

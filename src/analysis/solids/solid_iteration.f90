@@ -185,6 +185,7 @@ contains
     if (.not. self%has_inelastic()) then
       call self%solver%solve_balance(task%balance, model%joints, before%joints, after%joints, &
                                      task%x, outcome, error)
+      outcome%tolerance = self%solver%controls%residual_tolerance
       return
     end if
     do i = 1, size(self%choices)
@@ -193,6 +194,7 @@ contains
       self%time%holds_switches = self%chosen%holds_switches
       call iterate_on_forces(self, model, system, task, before, after, outcome, error)
       outcome%has_held_switches = self%chosen%holds_switches
+      outcome%tolerance = self%solver%controls%residual_tolerance
       if (allocated(error) .or. outcome%has_converged) return
       if (is_dropped(self%solver%controls)) return
       if (.not. self%matrix%is_elastic) then

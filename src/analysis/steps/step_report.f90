@@ -11,7 +11,7 @@ module step_report
   use step_system, only: dam_system
   use admissible_slip, only: check_slip
   use user_increments, only: end_user_increment
-  use failure_remedy, only: name_remedy, name_slave_side
+  use failure_remedy, only: name_criterion, name_remedy, name_slave_side
   use write_text, only: as_text
   implicit none
   private
@@ -63,7 +63,7 @@ contains
     type(balance_outcome), intent(in) :: outcome
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
-    character(240) :: text
+    character(480) :: text
     character(:), allocatable :: remedy
     integer :: p, j
     if (allocated(outcome%failure)) then
@@ -76,11 +76,13 @@ contains
         outcome%augmentations, ' augmentations (a larger KN needs fewer) with an increment of ', &
         now%control%last_size, ', last equilibrium at time ', now%total_time
     else
-      write (text, '(a,es8.2,a,i0,a,es8.1,a,es12.5)') 'no equilibrium: residual ', &
-        outcome%residual, ' after ', outcome%iterations, ' iterations with an increment of ', &
-        now%control%last_size, ', last equilibrium at time ', now%total_time
+      write (text, '(2a,i0,2a,es8.1,a,es12.5)') &
+        'no equilibrium: '//name_criterion(model%steps(now%step), outcome), ' after ', &
+        outcome%iterations, trim(merge(' iteration ', ' iterations', outcome%iterations == 1)), &
+        ' with an increment of ', now%control%last_size, ', last equilibrium at time ', &
+        now%total_time
     end if
-    remedy = name_remedy(model%steps(now%step), now%control, outcome%iterations)
+    remedy = name_remedy(model%steps(now%step), now%control, outcome)
     p = outcome%worst_point
     if (p == 0) then
       call raise(error, trim(text)//worst_node(model, system, outcome, now%step)//remedy)

@@ -57,18 +57,21 @@ contains
     character(*), intent(in) :: problem, expected
     character(:), allocatable :: label
     character(:), allocatable :: found, whole
+    logical :: is_value !< what was found is a value
     integer :: i
     found = without_quoted(problem)
     whole = found
     if (len(expected) > 0) whole = found//'; expected '//without_quoted(expected)
     label = ''
+    is_value = .false.
     do i = 1, list%num_pages
+      if (list%pages(i)%name == last_resort) is_value = list%pages(i)%fits(found)
       if (list%pages(i)%name == last_resort) cycle
       if (list%pages(i)%fits(found)) label = name_in_brackets(list%pages(i))
       if (len(label) > 0) return
     end do
     do i = 1, list%num_pages
-      if (index(found, "found ''") > 0 .and. list%pages(i)%name /= last_resort) cycle
+      if (is_value .and. list%pages(i)%name /= last_resort) cycle
       if (list%pages(i)%fits(whole)) label = name_in_brackets(list%pages(i))
       if (len(label) > 0) return
     end do

@@ -34,9 +34,10 @@ contains
                   '*STEP, NGEOM=NO', &
                   '*STEP, NLGEOM=NO')
     call list%add('outside-its-place', &
-                  'is outside |is in a part|begins in a part|inside a step|inside a part|not '// &
-                  'directly in|nothing is open here|is not closed|in all steps|before the '// &
-                  'first step|has a procedure already|so it is no keyword of', &
+                  'is outside |is in a part|is in an instance|begins in a part|inside a '// &
+                  'step|inside a part|not directly in|nothing is open here|is not closed|in '// &
+                  'all steps|before the first step|has a procedure already|so it is no '// &
+                  'keyword of|no step follows', &
                   'The keyword stands where it has no meaning: a property outside a material, '// &
                   'a load outside a step, a part that is still open.', &
                   'Move the card to the place that the message names. Properties follow '// &
@@ -45,16 +46,16 @@ contains
                   '*MATERIAL, NAME=CONCRETE; then *DENSITY')
     call list%add('incomplete-deck', &
                   'the deck ends without|the deck is empty|has no procedure|has no meaning '// &
-                  'without a step', &
+                  'without a step|nothing acts', &
                   'Something that every deck needs is missing: nodes, a step, a procedure in a '// &
-                  'step, a test.', &
+                  'step, a load, a test.', &
                   'Add the card that the message names. docs/tutorials/first_dam.md has a '// &
                   'small deck that is complete.', &
                   '*STEP and *END STEP alone', &
                   '*STEP; *STATIC; loads; *END STEP')
     call list%add('unreadable-file', &
-                  'cannot read|includes itself|cannot open|the file has no numbers|the file '// &
-                  'has no temperatures', &
+                  'cannot read|includes itself|levels of *INCLUDE|cannot open|the file has no '// &
+                  'numbers|the file has no temperatures', &
                   'A file that the deck names does not exist, may not be read, or holds no '// &
                   'numbers.', &
                   'Paths are relative to the file that names them. The message ends with the '// &
@@ -75,7 +76,7 @@ contains
                   'UNIT=G')
     call list%add('not-available', &
                   'not available|is not supported|are not supported|tied surfaces are no '// &
-                  'contact', &
+                  'contact|integration is implicit|has no viscous forces', &
                   'Keyway knows the keyword or the choice and does not have it. Input that is '// &
                   'not understood is never passed over.', &
                   'Take what the message offers in its place, or leave the card out. '// &

@@ -207,8 +207,8 @@ contains
                   '*SOLID SECTION, ELSET=ALL', &
                   '*SOLID SECTION, ELSET=DAM')
     call list%add('unknown-name', &
-                  'there is no |does not exist|has no node|no contact pair|no range of '// &
-                  'nodes|does not belong to any', &
+                  'there is no |does not exist|has no node|no contact pair|does not '// &
+                  'belong to any', &
                   'The deck names a node, element, set, surface, material, history or other '// &
                   'thing that does not exist, or exists only further down.', &
                   'Compare the spelling with the word after "did you mean". Sets and surfaces '// &

@@ -26,9 +26,9 @@ contains
                   '*DYNAMIC, DIRECT with ACCURACY', &
                   'one of the two')
     call list%add('missing-value', &
-                  'is missing|no file is named|has no value|without |is given without|does not '// &
-                  'say whether|has no temperatures|neither |an empty field|has neither|a '// &
-                  'history without', &
+                  'is missing|heading is empty|no file is named|has no value|without |is given '// &
+                  'without|does not say whether|has no temperatures|neither |an empty field|'// &
+                  'has neither|a history without', &
                   'The keyword needs a parameter, a field or a word that the card does not '// &
                   'have.', &
                   'Add what the message asks for; keyway --keywords NAME shows an example.', &
@@ -50,8 +50,8 @@ contains
                   '0., 0.; 2., 1.; 1., 0.', &
                   '0., 0.; 1., 0.; 2., 1.')
     call list%add('wrong-value', &
-                  'found |longer than the step|a name of |which is no name|the two '// &
-                  'points|neither a translation|expected |BY ITSELF', &
+                  'found |longer than the step|a name of |no range of |takes no value|which is '// &
+                  'no name|the two points|neither a translation|expected |BY ITSELF', &
                   'A value is not of the kind, or not in the range, that the message '// &
                   'describes: a letter O for a zero, a unit behind a number, a word that is no '// &
                   'choice.', &

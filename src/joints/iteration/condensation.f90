@@ -26,6 +26,7 @@ module condensation
   use newton_condensed, only: condensed_joints, closed_response, iterate_on_jumps, linearise_again
   use tangent_equations, only: joint_tangent
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome
+  use equilibrium, only: unmet_criterion, of_jumps, of_solves
   implicit none
   private
   public :: condensed_equilibrium
@@ -44,7 +45,8 @@ module condensation
     real(rk), private :: admissible = 0.0_rk
   contains
     procedure :: prepare_matrix, solve_balance
-    procedure, private :: condense, solve_from, has_drifted, jump_drift, refine, find_base
+    procedure, private :: condense, solve_from, jump_drift, refine, find_base
+    procedure, private :: solution_drift, admissible_drift
   end type condensed_equilibrium
 
   !> Admissible drift of the jumps, as a fraction of the residual tolerance.
@@ -259,7 +261,7 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     if (self%exact%is_rounded()) then
       call self%refine(balance, joints, old, new, x, outcome, error)
-    else if (self%has_drifted(balance, new, x)) then
+    else if (self%solution_drift(balance, new, x) > self%admissible_drift()) then
       nearer = balance
       nearer%is_repeated = .true.
       call nearer%start_from(self%operator, new)
@@ -281,13 +283,14 @@ contains
     type(balance_outcome), intent(inout) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(force_balance) :: nearer
-    real(rk) :: residual, admissible
+    real(rk) :: residual, admissible, drift, force
     integer :: pass, iterations
     logical :: is_near
     nearer = balance
     do pass = 1, most_refinements
       call self%find_base(balance, x, residual)
-      is_near = .not. self%has_drifted(balance, new, x)
+      drift = self%solution_drift(balance, new, x)
+      is_near = drift <= self%admissible_drift()
       admissible = max(self%admissible, self%exact%smallest_residual(self%base))
       if (is_near .and. residual <= admissible) exit
       call nearer%start_from(self%operator, new)
@@ -297,6 +300,11 @@ contains
       if (allocated(error) .or. .not. outcome%has_converged) return
     end do
     outcome%has_converged = pass <= most_refinements
+    if (.not. outcome%has_converged) then
+      force = max(balance%reference_force, norm(balance%rhs), tiny(1.0_rk))
+      outcome%unmet = unmet_criterion(of_solves, residual/force, admissible/force)
+      if (.not. is_near) outcome%unmet = unmet_criterion(of_jumps, drift, self%admissible_drift())
+    end if
     call self%exact%remember(self%base, self%base_force)
   end subroutine refine
 
@@ -317,9 +325,9 @@ contains
     end associate
   end subroutine find_base
 
-  !> Whether the jumps of the solution differ from those at which the laws were evaluated. A block
+  !> How far the jumps of the solution are from those at which the laws were evaluated. A block
   !> without contact in one iterate moves far, and the way back loses digits.
-  logical function has_drifted(self, balance, new, x)
+  real(rk) function solution_drift(self, balance, new, x)
     class(condensed_equilibrium), intent(in) :: self
     type(force_balance), intent(in) :: balance
     type(joint_state), intent(in) :: new(:)
@@ -327,9 +335,14 @@ contains
     real(rk), dimension(3, self%operator%num_points) :: jump, drift
     call self%operator%jumps(x, drift)
     call gather_jumps(self%operator, new, jump)
-    has_drifted = self%jump_drift(balance, new, drift + balance%offset - jump) &
-                  > allowed_drift*self%controls%residual_tolerance
-  end function has_drifted
+    solution_drift = self%jump_drift(balance, new, drift + balance%offset - jump)
+  end function solution_drift
+
+  !> Drift that a solution may have.
+  pure real(rk) function admissible_drift(self)
+    class(condensed_equilibrium), intent(in) :: self
+    admissible_drift = allowed_drift*self%controls%residual_tolerance
+  end function admissible_drift
 
   !> Force of a drift of the jumps on closed joints, over the joint forces.
   real(rk) function jump_drift(self, balance, new, drift)

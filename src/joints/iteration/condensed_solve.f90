@@ -71,12 +71,15 @@ contains
         if (passes%learns) call learn(self, excess - last_excess, field%response - exact)
         exact = field%response
         last_excess = excess
-        if (field%drift <= admissible_drift(self) .and. .not. self%condensed%is_rough) exit
+        if (field%drift <= self%admissible_drift() .and. .not. self%condensed%is_rough) exit
         call start_pass(self, field, passes)
         call linearise_again(self%condensed, joints, operator, old, field, new)
       end do
     end associate
     outcome%has_converged = pass <= most_passes
+    if (.not. outcome%has_converged) then
+      outcome%unmet = unmet_criterion(of_jumps, field%drift, self%admissible_drift())
+    end if
     self%excess = excess
     call end_solve(self, balance%is_partial, excess - last_excess, half, x, error)
   end subroutine solve_from
@@ -133,21 +136,15 @@ contains
     if (is_last_pass .or. self%condensed%is_rough) return
     associate (last => passes%drift(1), before => passes%drift(2))
       is_last_pass = 0.0_rk < before .and. last < before .and. &
-                     last*(last/before) <= sure_share*admissible_drift(self)
+                     last*(last/before) <= sure_share*self%admissible_drift()
     end associate
   end function is_last_pass
 
   !> Whether what is left out of G moves the jumps less than a solution may drift.
   pure logical function has_small_rest(self)
     class(condensed_equilibrium), intent(in) :: self
-    has_small_rest = self%condensed%blocks%left_out <= small_share*admissible_drift(self)
+    has_small_rest = self%condensed%blocks%left_out <= small_share*self%admissible_drift()
   end function has_small_rest
-
-  !> Drift that a solution may have.
-  pure real(rk) function admissible_drift(self)
-    class(condensed_equilibrium), intent(in) :: self
-    admissible_drift = allowed_drift*self%controls%residual_tolerance
-  end function admissible_drift
 
   !> Saves an increment as a problem of its own (--save-joint-problems).
   subroutine save_increment(self, balance, joints, old, start, error)

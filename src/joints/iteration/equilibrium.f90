@@ -22,6 +22,7 @@ module equilibrium
   implicit none
   private
   public :: equilibrium_solver, force_balance, balance_outcome, is_dropped
+  public :: unmet_criterion, of_increment, of_jumps, of_solves
 
   !> Right-hand side and starting values.
   type :: force_balance
@@ -40,6 +41,16 @@ module equilibrium
     procedure :: set_jumps, start_from
   end type force_balance
 
+  !> A criterion that a solution of the iteration does not meet.
+  type :: unmet_criterion
+    character(9) :: name = '' !< one of those below; '' for the residual
+    real(rk) :: value = 0.0_rk, tolerance = 0.0_rk
+  end type unmet_criterion
+
+  !> The last correction; the jumps of the solution, which are not those of the laws; what the
+  !> solves leave of the forces.
+  character(*), parameter :: of_increment = 'increment', of_jumps = 'jumps', of_solves = 'solves'
+
   !> Outcome of the iteration.
   type :: balance_outcome
     logical :: has_converged = .false.
@@ -57,7 +68,9 @@ module equilibrium
     logical :: is_driven = .false., is_loose = .false.
     logical :: has_held_switches = .false. !< of laws with discontinuous stress (theory.md, 12)
     real(rk) :: residual = 0.0_rk !< norm of the residual forces over the reference force
+    real(rk) :: tolerance = 0.0_rk !< of the residual
     real(rk) :: correction = 0.0_rk !< Newton correction for the residual, over the increment
+    type(unmet_criterion) :: unmet !< of a solution that is within the tolerances of *CONTROLS
     integer :: worst_point = 0 !< joint point with the largest residual
     integer :: worst_unknown = 0 !< of the largest residual of inelastic solids
     real(rk), allocatable :: history(:) !< residuals of the iterations on inelastic solids

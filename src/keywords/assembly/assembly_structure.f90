@@ -77,6 +77,8 @@ contains
     do i = 1, size(cards)
       if (is_structural(cards(i))) then
         call check_card(cards(i), specs(find_spec(specs, cards(i)%keyword)), faults, is_right)
+        ! A faulty end is an end, so that what follows is not taken as part of the block.
+        if (index(cards(i)%keyword, 'END') == 1) is_right = .true.
         if (is_right) call read_structural(cards, i, structure, faults)
       else if (structure%part > 0) then
         call check_part_card(cards(i), specs, 'a part', faults)

@@ -211,7 +211,7 @@ contains
       dot = prefix_length(structure, this%text_at(line, field))
       if (dot > 0) then
         call rewrite_label(this, line, field, words, plain%is_element, structure, faults)
-      else if (plain%owner > 1) then
+      else if (plain%owner > 1 .and. .not. this%has('GENERATE')) then
         call words%put_field(this, line, field, structure%instances(plain%owner)%name//'.'// &
                              this%text_at(line, field))
       end if
@@ -264,6 +264,10 @@ contains
     else
       call this%fault_at(faults, line, field, 'instance '//structure%instances(plain%owner)%name// &
                          ' has no '//kind//' '//as_text(id), text_of_range(kind, range))
+      if (.not. this%has('GENERATE') .or. range%highest == 0) return
+      ! The faulty range ends within the instance, so that no further fault follows.
+      call words%put_field(this, line, field, as_text(range%offset + max(range%lowest, &
+                                                                         min(range%highest, id))))
     end if
   end subroutine put_number
 

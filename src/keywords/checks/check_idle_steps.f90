@@ -4,6 +4,7 @@ module check_idle_steps
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
+  use keyword_spec, only: without_effect
   use kinds, only: rk
   use model_draft, only: draft
   use step_plan, only: step_procedure
@@ -22,6 +23,22 @@ module check_idle_steps
 
   character(*), parameter :: requests = ' NODE PRINT | EL PRINT | JOINT PRINT | NODE FILE | '// &
                              'EL FILE | NODE OUTPUT | ELEMENT OUTPUT '
+  !> Keywords that drive nothing; *BOUNDARY and joints are looked at. A deck with any other keyword
+  !> is taken as one where something acts.
+  character(*), parameter :: idle = &
+                             ' HEADING | INCLUDE | NODE | ELEMENT | NSET | ELSET | '// &
+                             'SURFACE | PART | END PART | ASSEMBLY | INSTANCE | '// &
+                             'END INSTANCE | END ASSEMBLY | MATERIAL | DENSITY | DAMPING | '// &
+                             'EXPANSION | ELASTIC | PLASTIC | CONCRETE DAMAGED PLASTICITY | '// &
+                             'CONCRETE COMPRESSION HARDENING | '// &
+                             'CONCRETE TENSION STIFFENING | CONCRETE COMPRESSION DAMAGE | '// &
+                             'CONCRETE TENSION DAMAGE | MATERIAL TEST | SOLID SECTION | '// &
+                             'JOINT LAW | JOINT | TIE | EQUATION | MPC | INTERFACE | '// &
+                             'SURFACE INTERACTION | SURFACE BEHAVIOR | FRICTION | '// &
+                             'CONTACT PAIR | CLEARANCE | AMPLITUDE | STEP | END STEP | '// &
+                             'STATIC | DYNAMIC | CONTROLS | BOUNDARY | NODE PRINT | '// &
+                             'EL PRINT | JOINT PRINT | NODE FILE | EL FILE | OUTPUT | '// &
+                             'NODE OUTPUT | ELEMENT OUTPUT | ENVELOPE | RESTART | PREPRINT '
   character(*), parameter :: no_dynamic = ': no *DYNAMIC step from here on'
 
 contains
@@ -33,6 +50,7 @@ contains
     type(later_steps) :: now
     integer :: step(size(model%cards))
     integer :: i
+    call warn_of_idle_run(model, faults)
     step = steps_of_cards(model%cards)
     do i = 1, size(step)
       associate (this => model%cards(i))
@@ -62,6 +80,31 @@ contains
       end associate
     end do
   end subroutine warn_of_idle_steps
+
+  !> A model that nothing loads or moves has results of zero. Joints that the mesh presses together
+  !> act from the start.
+  subroutine warn_of_idle_run(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i
+    if (size(model%problem%steps) == 0) return
+    do i = 1, size(model%cards)
+      associate (this => model%cards(i))
+        if (.not. allocated(this%spec%name)) return
+        if (is_keyword(this, 'BOUNDARY')) then
+          if (first_displacement(this) > 0) return
+        end if
+        if (this%spec%status == without_effect) cycle
+        if (index(idle, ' '//this%spec%name//' ') == 0) return
+      end associate
+    end do
+    do i = 1, size(model%problem%joints)
+      if (any(model%problem%joints(i)%clearance < 0.0_rk)) return
+    end do
+    call model%cards(model%procedure_card(1))%warn( &
+      faults, 'the deck has no load, no displacement of supports, no temperature and no '// &
+      'motion of the base: nothing acts, and all results are zero')
+  end subroutine warn_of_idle_run
 
   pure type(later_steps) function steps_from(model, number) result(now)
     type(draft), intent(in) :: model

@@ -57,6 +57,11 @@ contains
           if (.not. (this%has('THICKNESS') .or. this%has('KN'))) then
             call this%warn(faults, 'THICKNESS, which KN comes from, is 0.02 by default'//why)
           end if
+        else if (is_keyword(this, 'INTERFACE')) then
+          if (.not. this%has('STIFFNESS')) then
+            call this%warn(faults, 'STIFFNESS is by default E over one unit of length '// &
+                           '(in mm 1000 times as stiff)'//why)
+          end if
         else if (is_keyword(this, 'DLOAD')) then
           call warn_of_gravity(this, why, faults)
         else if (is_keyword(this, 'BASE MOTION')) then

@@ -2,7 +2,7 @@
 module keywords_contact_law
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: field, keyword, kind_flag, kind_real, kind_text, kind_word
+  use keyword_spec, only: field, keyword, kind_flag, kind_real, kind_choice, kind_word
   use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft, interaction_request
@@ -66,7 +66,9 @@ contains
     spec%most_lines = 1
     spec%no_further = 'the pressure is linear in the penetration'
     allocate (spec%parameters, source=[ &
-              field('PRESSURE-OVERCLOSURE', kind_text, 'HARD, LINEAR or TIED', default='HARD'), &
+              field('PRESSURE-OVERCLOSURE', kind_choice, 'for a table LINEAR with its '// &
+                    'slope at the pressures of the model', default='HARD', &
+                    choices='HARD | LINEAR | TIED', rules_lines=.true.), &
               field('NO SEPARATION', kind_flag, 'refused: see TIED')])
     allocate (spec%columns, source=[ &
               field('stiffness', kind_real, 'normal stiffness', 'Pa/m', lowest=0.0_rk, &
@@ -94,18 +96,10 @@ contains
         'one for each *SURFACE INTERACTION', first=model%cards(law%behavior_card)%place())
       law%behavior_card = model%current
       law%stiffness = this%real_at(1, 1)
-      select case (this%word('PRESSURE-OVERCLOSURE'))
-      case ('HARD')
-      case ('LINEAR')
-        if (this%is_empty_at(1, 1)) call this%fault( &
-          faults, 'LINEAR without its stiffness', 'a data line: stiffness [Pa/m]')
-      case ('TIED')
-        law%is_tied = .true.
-      case default
-        call this%fault_parameter( &
-          faults, 'PRESSURE-OVERCLOSURE', "found '"//this%text('PRESSURE-OVERCLOSURE')//"'", &
-          'HARD, or LINEAR with the slope at the pressures of the model, or TIED')
-      end select
+      law%is_tied = this%word('PRESSURE-OVERCLOSURE') == 'TIED'
+      if (this%word('PRESSURE-OVERCLOSURE') == 'LINEAR' .and. this%is_empty_at(1, 1)) then
+        call this%fault(faults, 'LINEAR without its stiffness', 'a data line: stiffness [Pa/m]')
+      end if
     end associate
     do i = 2, 3
       if (.not. this%is_empty_at(1, i)) call this%ignore( &

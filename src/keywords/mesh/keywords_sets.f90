@@ -88,8 +88,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
     integer, allocatable :: some(:)
-    integer :: line, i, used, num_before
-    num_before = faults%num_errors
+    integer :: line, i, used
     used = 0
     call make_room(members, used, 0)
     do line = 1, this%num_lines
@@ -116,7 +115,7 @@ contains
       end do
     end do
     members = members(:used)
-    if (used == 0 .and. faults%num_errors == num_before) then
+    if (this%num_lines == 0) then ! sets without members by a fault are reported there
       call this%fault(faults, 'the set is empty', 'at least one '//kind)
     end if
   end subroutine collect_members

@@ -12,6 +12,7 @@ module keywords_output
   use keywords_print, only: add_frequency, fields_of, read_histories
   use kinds, only: rk
   use model_draft, only: draft
+  use named_things, only: elements_of_set, nodes_of_set
   use step_plan, only: field_name_length, field_request, output_rhythm
   implicit none
   private
@@ -161,10 +162,29 @@ contains
     if (model%output_is_history) then
       call read_histories(this, model, faults)
     else
+      call ignore_set(this, model, faults)
       call clear_files(model, .true., .true.)
       call take_files(this, model%rhythm, model, faults)
     end if
   end subroutine read_fields
+
+  !> A set must exist also where it has no effect.
+  subroutine ignore_set(this, model, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: set
+    integer, allocatable :: members(:)
+    integer :: num_before
+    num_before = faults%num_errors
+    set = 'ELSET'
+    if (this%has('NSET')) set = 'NSET'
+    if (.not. this%has(set)) return
+    if (set == 'NSET') call nodes_of_set(this, set, model, faults, members)
+    if (set == 'ELSET') call elements_of_set(this, set, model, faults, members)
+    if (faults%num_errors > num_before) return
+    call this%ignore(faults, set//' has no effect here: fields are those of the whole model')
+  end subroutine ignore_set
 
   !> *NODE FILE and *EL FILE.
   subroutine read_files(this, model, faults)

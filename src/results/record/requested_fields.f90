@@ -8,6 +8,7 @@ module requested_fields
   use print_kinds, only: prints_of_joints
   use reduced_nodes, only: is_followed
   use result_writer, only: is_due, meets
+  use step_plan, only: step
   implicit none
   private
   public :: list_due_fields, asks_for_joints, is_of_law, needs_nodes
@@ -36,8 +37,7 @@ contains
           if (is_written(model, now, record, f)) then
             fields = [fields, f]
           else if (.not. is_of_law(record, f)) then
-            call record%warn_once('step '//model%steps(now%step)%name//' has no field '// &
-                                  trim(request%fields(i))//'; it is not written')
+            call warn_of_missing(model%steps(now%step), trim(request%fields(i)), record)
           end if
         end do
       end associate
@@ -46,6 +46,19 @@ contains
     fields = [fields, pack([(f, f=1, size(record%fields))], &
                            [(record%fields(f)%provider == by_guest, f=1, size(record%fields))])]
   end subroutine list_due_fields
+
+  !> Warns once of a field that steps do not have.
+  subroutine warn_of_missing(plan, name, record)
+    type(step), intent(in) :: plan
+    character(*), intent(in) :: name !< of the field
+    type(run_record), intent(inout) :: record
+    if (plan%procedure%is_static() .and. (name == 'V' .or. name == 'A')) then
+      call record%warn_once('static steps have no field '//name//': job.h5 and the VTK series '// &
+                            'are without it there')
+    else
+      call record%warn_once('step '//plan%name//' has no field '//name//'; it is not written')
+    end if
+  end subroutine warn_of_missing
 
   !> Whether a checkpoint, an envelope or a request of nodes, elements or fields needs the motion of
   !> the nodes now.

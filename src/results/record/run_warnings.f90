@@ -12,6 +12,9 @@ submodule(run_records) run_warnings
   !> the energy.
   real(rk), parameter :: largest_dissipation = 0.3_rk
 
+  !> Nearer to the limit of ALPHA, -1/3, more damping of the scheme is no advice.
+  real(rk), parameter :: strong_alpha = -0.25_rk
+
 contains
 
   !> Warns of what an increment shows of the run.
@@ -110,7 +113,11 @@ contains
     if (self%most_taken - taken <= largest_gain*now%energy%largest) return
     if (has_jumps(model)) return
     advice = 'smaller increments'
-    if (model%steps(now%step)%procedure%uses_alpha) advice = advice//', or an ALPHA further below 0'
+    associate (plan => model%steps(now%step))
+      if (plan%procedure%uses_alpha .and. plan%alpha > strong_alpha) then
+        advice = advice//', or an ALPHA further below 0, down to -1/3'
+      end if
+    end associate
     if (abs(self%damage%created) > 0.0_rk) then
       advice = advice//', or concrete with RECOVERY=ENERGY, whose increments keep their energy'
     end if

@@ -7,6 +7,7 @@ module run_closing
   use error_words, only: error_of, error_of_envelope, error_of_motion, line_of_law, &
                          line_of_mesh, line_of_omissions
   use extremes, only: extreme
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
   use run_ledger, only: ledger, ledger_part
@@ -100,13 +101,25 @@ contains
             text = text//error_of(record%goals(of_opening), opening%value)
           end if
         else
-          text = text//'never open'
+          text = text//closed_text(model%joints(j))
         end if
         if (slip%is_found) text = text//', largest slip '//as_short_text(slip%value)
       end associate
     end do
     if (any(is_left)) text = text//nl//'the other '//as_text(count(is_left))//' joints open less'
   end function lines_of_joints
+
+  !> 'never open', or what is left of a gap at the start.
+  function closed_text(joint) result(text)
+    type(dam_joint), intent(in) :: joint
+    character(:), allocatable :: text
+    real(rk) :: gap
+    gap = joint%law%gap
+    if (size(joint%clearance) > 0) gap = gap + maxval(joint%clearance)
+    text = 'never open'
+    if (gap > 0.0_rk) text = 'open by up to '//as_short_text(gap)//' in the mesh, closed at '// &
+                             'the end of all increments'
+  end function closed_text
 
   !> Largest damage, damaged volume and dissipated energy.
   function lines_of_damage(model, summary, record) result(text)

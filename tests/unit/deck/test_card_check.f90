@@ -167,7 +167,7 @@ contains
     call expect('*NSET'//lf//'1', at//'1: *NSET: parameter NSET is missing; expected NSET = '// &
                 'name of the set, a name')
     call expect('*NSET, NSET=a, GENERATE=YES'//lf//'1', at//'1: *NSET: GENERATE takes no '// &
-                'value; expected ids from, to, step, a flag without value')
+                'value; expected GENERATE alone')
     call expect('*AMPLITUDE, NAME=a, DT=-1'//lf//'1,2', at// &
                 "1: *AMPLITUDE: DT: found '-1'; expected time step, a number >= 0 [s]")
     call expect('*END STEP, NOW', at// &
