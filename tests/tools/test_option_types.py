@@ -15,7 +15,7 @@ BAD = [
     (make_dam, "--crest-overhang inf", "inf: expected a finite number"),
     (make_dam, "--concrete -1 0.2 2400", "--concrete -1 0.2 2400: expected E above 0"),
     (make_dam, "--rock 1e9 0.5", "expected E above 0, NU in -1..0.5"),
-    (make_dam, "--damping 0.05 0 0", "expected frequencies F1, F2 above 0"),
+    (make_dam, "--damping 0.05 0 0", "expected frequencies above 0, F1 below F2"),
     (make_dam, "--lifts 2 --grouting 1 2 --temperatures 1e-5 16 10 --seasons a.csv nan 1",
      "expected a file and two numbers above 0"),
     (make_dam, "--joint-places 900", "900 m is too near an end of the crest, or beyond it"),
