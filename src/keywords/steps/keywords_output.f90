@@ -250,7 +250,8 @@ contains
     spec%family = 'output'
     spec%place = 'step'
     spec%meaning = 'Records the extremes over the increments of the step, in *DYNAMIC with the '// &
-                   'state at its start: '//fields_in_words('ENVELOPE')//'. job.json has their place and time, the '// &
+                   'state at its start: '//fields_in_words('ENVELOPE')// &
+                   '. job.json has their place and time, the '// &
                    'results at the end of the step have them as '// &
                    'fields. Without data lines: S1, S3 and, where there are joints, OPENING. '// &
                    'POSITION=POINTS takes the stresses S1 and S3 at the integration points of '// &

@@ -35,8 +35,8 @@ contains
     call check_sliding(self, model, now)
   end subroutine warn_of_increment
 
-  !> Warns when displacements exceed the size of the model: displacements are small here, so a part is
-  !> loose or an input is wrong.
+  !> Warns when displacements exceed the size of the model: displacements are small here, so a part
+  !> is loose or an input is wrong.
   subroutine check_size(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -63,8 +63,8 @@ contains
     end associate
   end subroutine check_reduction
 
-  !> Warns when points of joints slide or hit each other in a step that follows an accuracy: an error
-  !> of a slip stays, an impact decides how a body goes on, and the estimate sees neither.
+  !> Warns when points of joints slide or hit each other in a step that follows an accuracy: an
+  !> error of a slip stays, an impact decides how a body goes on, and the estimate sees neither.
   subroutine check_sliding(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
