@@ -214,7 +214,7 @@ contains
   end subroutine add_supports
 
   !> Adds the rows of a tie or of equations to the matrix sum row^T row: the displacement of each
-  !> node that follows less those that it follows.
+  !> node that follows less those that it follows, over the norm of the weights.
   subroutine add_tie(parts, x, tie, matrix)
     type(block_set), intent(in) :: parts
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
@@ -233,6 +233,7 @@ contains
           if (allocated(tie%item_direction)) item_direction = tie%item_direction(k)
           call add_node_motion(parts, x, tie%item(k), along(item_direction, -tie%weight(k)), row)
         end do
+        row = row/sqrt(1.0_rk + sum(tie%weight(tie%first(i):tie%first(i + 1) - 1)**2))
         associate (flat => reshape(row, [size(row)]))
           used = pack([(k, k=1, size(flat))], abs(flat) > 0.0_rk)
           do k = 1, size(used)

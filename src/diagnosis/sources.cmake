@@ -3,4 +3,5 @@ set(sources
   free_blocks.f90
   joint_capacity.f90
   rigid_blocks.f90
+  tie_resistance.f90
 )

@@ -19,6 +19,7 @@ module read_deck
   use check_unused, only: warn_of_unused
   use check_water, only: warn_of_water
   use choose_c3d8, only: choose_element
+  use deck_card, only: card
   use deck_echo, only: echo_of_cards
   use deck_lexer, only: read_cards
   use deck_options, only: reading_options
@@ -156,8 +157,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: where_it_stands
     logical :: is_in_step, is_in_material
-    integer :: i, found
+    integer :: i, found, last_step
     allocate (keyword_of_card(size(model%cards)), source=0)
+    last_step = findloc([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))], .true., &
+                        dim=1, back=.true.)
     is_in_step = .false.
     is_in_material = .false.
     do i = 1, size(model%cards)
@@ -168,7 +171,9 @@ contains
       if (found == 0) cycle
       associate (spec => list%specs(found))
         call check_place(model, i, spec%place, is_in_step, is_in_material, faults, found)
-        if (.not. is_in_step) call check_step_follows(model, i, spec, faults, found)
+        if (i > last_step .and. .not. is_in_step) then
+          call check_step_follows(model%cards(i), spec, last_step, faults, found)
+        end if
         is_in_material = spec%name == 'MATERIAL' .or. is_in_material .and. spec%place == 'material'
         if (spec%name == 'STEP') is_in_step = .true.
         if (spec%name == 'END STEP') is_in_step = .false.
@@ -198,19 +203,15 @@ contains
 
   !> A keyword that acts from the next step on must have one; else `found` is set to 0. Decks
   !> without steps are those of materials.
-  subroutine check_step_follows(model, i, spec, faults, found)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: i !< card
+  subroutine check_step_follows(this, spec, last_step, faults, found)
+    type(card), intent(in) :: this !< below the last *STEP
     type(keyword), intent(in) :: spec !< of its keyword
+    integer, intent(in) :: last_step !< card, 0 for none
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(inout) :: found
-    integer :: k
-    if (spec%place /= 'anywhere' .or. spec%status == without_effect) return
-    associate (is_step => [(model%cards(k)%keyword == 'STEP', k=1, size(model%cards))])
-      if (any(is_step(i:)) .or. .not. any(is_step)) return
-    end associate
-    call model%cards(i)%fault(faults, 'no step follows the keyword', &
-                              'a place in a step or above the last *STEP')
+    if (spec%place /= 'anywhere' .or. spec%status == without_effect .or. last_step == 0) return
+    call this%fault(faults, 'no step follows the keyword', &
+                    'a place in a step or above the last *STEP')
     found = 0
   end subroutine check_step_follows
 

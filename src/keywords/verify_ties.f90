@@ -8,16 +8,17 @@ module verify_ties
   use guest_list, only: supports_of_step, ties_of
   use kinds, only: rk
   use model_draft, only: draft
-  use rigid_blocks, only: add_supports, add_tie, block_set, find_tied_parts
+  use rigid_blocks, only: add_supports, block_set, find_tied_parts
   use symmetric_modes, only: find_modes
+  use tie_resistance, only: add_resistance, scale_parts
+  use write_text, only: as_text
   implicit none
   private
   public :: verify_tied_parts
 
   integer, parameter :: most_parts = 100 !< more are not checked
-  !> Of the largest, in squares: a tie over a patch of 1e-4 of its part counts as one over a point.
-  !> The rows of mortar ties are not exact along a line, and leave some 1e-9.
-  real(rk), parameter :: least_resistance = 1.0e-8_rk
+  !> Of the largest, in squares. A chain of 100 parts has 1e-10, round-off 1e-15.
+  real(rk), parameter :: least_resistance = 1.0e-12_rk
   !> A smaller share of a part in the free motions, squared, is round-off.
   real(rk), parameter :: no_share = 1.0e-6_rk
 
@@ -30,7 +31,8 @@ contains
     type(node_tie), allocatable :: ties(:)
     type(block_set) :: parts
     type(error_type), allocatable :: error
-    real(rk), allocatable :: by_ties(:, :), own(:, :), matrix(:, :), resistance(:), motions(:, :)
+    real(rk), allocatable :: by_ties(:, :), matrix(:, :), checked(:, :)
+    real(rk), allocatable :: resistance(:), motions(:, :)
     integer, allocatable :: node(:), direction(:)
     integer :: i, num_free
     call ties_of(model%problem%guests, ties)
@@ -39,18 +41,20 @@ contains
     if (parts%num_blocks < 2 .or. parts%num_blocks > most_parts) return
     if (.not. all(have_elements(parts, ties))) return ! nodes without elements may pass on motions
     allocate (by_ties(6*parts%num_blocks, 6*parts%num_blocks), source=0.0_rk)
-    allocate (own, source=by_ties)
     do i = 1, size(ties)
-      own = 0.0_rk
-      call add_tie(parts, model%problem%mesh%x, ties(i), own)
-      by_ties = by_ties + own/max(1, size(ties(i)%node))
+      call add_resistance(parts, model%problem%mesh%x, ties(i), by_ties, error)
+      if (allocated(error)) return
     end do
+    checked = 0.0_rk*by_ties
     do i = 1, size(model%problem%steps)
       if (model%problem%steps(i)%procedure%has_inertia) cycle
+      matrix = by_ties
       call supports_of_step(model%problem, model%problem%steps(i), node, direction)
-      matrix = 0.0_rk*by_ties
       call add_supports(parts, model%problem%mesh%x, node, direction, matrix)
-      matrix = by_ties + matrix/max(1, size(node))
+      call hold_absent(model, i, parts, matrix)
+      call scale_parts(matrix)
+      if (all(abs(matrix - checked) <= 0.0_rk)) cycle
+      checked = matrix
       call find_modes(matrix, resistance, motions, error)
       if (allocated(error)) return
       num_free = count(resistance <= least_resistance*maxval(resistance))
@@ -68,6 +72,31 @@ contains
                     .and. all(parts%block_of(tie%item(:tie%first(size(tie%node) + 1) - 1)) > 0)
   end function have_elements
 
+  !> Parts that *MODEL CHANGE has taken out in a step do not move.
+  subroutine hold_absent(model, number, parts, matrix)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(block_set), intent(in) :: parts
+    real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
+    logical :: is_there(parts%num_blocks)
+    integer :: b, e, k
+    if (.not. allocated(model%problem%stages%is_absent)) return
+    is_there = .false.
+    associate (mesh => model%problem%mesh)
+      do e = 1, mesh%num_elements
+        if (model%problem%stages%is_absent(e, number)) cycle
+        b = parts%block_of(mesh%nodes(1, e))
+        if (b > 0) is_there(b) = .true.
+      end do
+    end associate
+    do b = 1, parts%num_blocks
+      if (is_there(b)) cycle
+      do k = 6*b - 5, 6*b
+        matrix(k, k) = matrix(k, k) + 1.0_rk
+      end do
+    end do
+  end subroutine hold_absent
+
   !> Reports the part with the largest share in the free motions.
   subroutine fault_part(model, number, parts, motions, faults)
     type(draft), intent(in) :: model
@@ -77,7 +106,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(error_type), allocatable :: error
     real(rk), allocatable :: share(:), motion(:, :)
-    integer :: b, free
+    character(:), allocatable :: text
+    integer :: b, free, first
     free = 1
     do b = 2, parts%num_blocks
       if (norm2(motions(6*b - 5:6*b, :)) > norm2(motions(6*free - 5:6*free, :))) free = b
@@ -86,10 +116,15 @@ contains
       call find_modes(matmul(own, transpose(own)), share, motion, error)
     end associate
     if (allocated(error)) return
+    first = findloc(share > no_share, .true., 1)
+    if (first == 6) then
+      text = 'the block can '//freedom_text(parts, free, motion(:, 6:))
+    else ! the axes of several motions are any of their space
+      text = 'the block has '//as_text(7 - first)//' free motions'
+    end if
     call model%cards(model%procedure_card(number))%fault( &
-      faults, block_name(model%problem, parts, free)//' can '// &
-      freedom_text(parts, free, motion(:, findloc(share > no_share, .true., 1):))// &
-      ': ties, equations and supports do not prevent this motion', &
+      faults, block_name(model%problem, parts, free)//' is free to move: '//text// &
+      ', which ties, equations and supports do not prevent', &
       'ties over faces, not along one line, or supports of this part')
   end subroutine fault_part
 end module verify_ties

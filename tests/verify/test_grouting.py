@@ -126,6 +126,17 @@ def test_pressure_of_the_grout_stays_when_it_hardens(keyway, facets):
     assert max(e["error"] for e in energy[1:3]) < 1e-10
 
 
+def test_grout_hardens_before_a_step_of_modes(keyway):
+    """Its energy stands in the step after the modes: p^2 A / (2 k_n), as without them."""
+    p = 2e5
+    modes = "*STEP\n*FREQUENCY\n1\n*END STEP\n"
+    deck = bar(BONDED) + move(SAWN) + move(SAWN, f"*GROUT, JOINT=J, PRESSURE={p!r}\n")
+    deck = (deck + modes + move(SAWN)).replace("*ELASTIC", "*DENSITY\n2400.\n*ELASTIC")
+    energy = keyway(deck).json["steps"][-1]["energy"]
+    assert energy["stages"] == pytest.approx(p**2 / (2 * KN), rel=1e-9)
+    assert energy["error"] < 1e-10
+
+
 @MESHES
 def test_grout_in_contact_without_penetration(keyway, facets):
     """-(D E/L) before and after; under pressure p of the grout as well, which then hardens."""

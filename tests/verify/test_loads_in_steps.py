@@ -66,6 +66,11 @@ CASES = {
         (PRESS.format("", "01", "P6, 3."), PRESS.format("", "1", "P6, 4.")),
         (3.0 * RAMP, 3.0 + RAMP),
     ),
+    # Lines of one card that change loads of the step before.
+    "two pressures are given again": (
+        ("*DSLOAD\nSIDE, P, 5.\nLOWER, P, 2.\n", "*DSLOAD\nSIDE, P, 6.\nLOWER, P, 4.\n"),
+        (7.0 * RAMP, 7.0 + 3.0 * RAMP),
+    ),
     # What OP=NEW has cleared leaves nothing to the next load, of its own kind or of another one.
     "a cleared pressure is given again": (
         (PRESS.format("", "1", "P6, 3."), "*DLOAD, OP=NEW\n", PRESS.format("", "1", "P6, 5.")),
@@ -86,7 +91,7 @@ def column(steps: tuple) -> str:
     mesh.node_sets["TOP"] = number[:, :, 2].ravel()
     mesh.node_sets["CORNER"] = number[:1, :1, 2].ravel()
     cards = elastic(1e6, 0.2) + "*BOUNDARY\nBASE, 1, 3\n" + HISTORIES
-    cards += "*SURFACE, NAME=SIDE\n2, S6\n"
+    cards += "*SURFACE, NAME=SIDE\n2, S6\n*SURFACE, NAME=LOWER\n1, S6\n"
     cards += "*ELSET, ELSET=ALL_BRICKS\n1, 2\n*ELSET, ELSET=LOW\n1\n"
     for loads in steps:
         between, inside = loads if isinstance(loads, tuple) else ("", loads)
@@ -135,3 +140,29 @@ def test_displacements_larger_than_the_model(keyway, push, is_large):
     assert (largest > np.sqrt(6.0)) == is_large
     warned = [text for text in run.json["warnings"] if "larger than the model" in text]
     assert len(warned) == is_large
+
+
+def test_a_load_given_in_a_step_of_modes(keyway):
+    """It acts from the next step on, with what it replaces gone: as if that step had its card."""
+    high = PRESS.format("", "ALL_BRICKS", "HP6, 2., 2., 0.")
+    low = PRESS.format(", AMPLITUDE=ONE", "ALL_BRICKS", "HP6, 1., 1., 0.")
+    deck = column((high, low)).replace("*ELASTIC", "*DENSITY\n1.\n*ELASTIC")
+    modes = f"*STEP\n*FREQUENCY\n1\n{low}*END STEP\n"
+    head, tail = deck.rsplit("*STEP\n", 1)
+    table = keyway(head + modes + "*STEP\n" + tail.replace(low, "")).csv("node_BASE")
+    last = table["step"] == 3
+    forces = -table["RF1"][last].reshape(-1, 4).sum(axis=1)
+    assert forces == pytest.approx(0.5 * FULL, rel=1e-8)
+
+
+def test_a_temperature_in_a_step_of_modes_has_no_effect(keyway):
+    """As its warning says: a history over total time goes on."""
+    blocks = brick((1, 1, 1), (1.0, 1.0, 1.0))
+    clock = "*AMPLITUDE, NAME=CLOCK, TIME=TOTAL TIME\n0., 10., 10., 110.\n"
+    cards = clock + "*BOUNDARY\nALL, 1, 2\n1, 3, 3\n"
+    steps = step("*TEMPERATURE, AMPLITUDE=CLOCK\nALL, 1.\n" + OUTPUT)
+    steps += "*STEP\n*FREQUENCY\n1\n*TEMPERATURE\nALL, 7.\n*END STEP\n" + step()
+    run = keyway(model(blocks, cards, law(0.0)) + steps)
+    table = run.csv("node_ALL")
+    assert "no effect in a step *FREQUENCY" in run.stderr
+    assert table["TEMP"] == pytest.approx(np.repeat([20.0, 30.0], 8))

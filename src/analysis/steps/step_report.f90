@@ -109,7 +109,12 @@ contains
            place_text(model%mesh%x(:, node))
     if (.not. model%steps(step)%procedure%is_static()) return
     text = text//' (beyond its peak load a cracking structure needs prescribed displacements, '// &
-           'not forces; with these, smaller increments or *CONTROLS, TANGENT=CONSISTENT)'
+           'not forces; with these, smaller increments or *CONTROLS, TANGENT='
+    if (model%steps(step)%controls%tangent == 'AUTO') then
+      text = text//'CONSISTENT)'
+    else
+      text = text//'AUTO)'
+    end if
   end function worst_node
 
   !> Failure of a material, or of uplift in a joint, in the smallest increment.
@@ -121,6 +126,8 @@ contains
     write (place, '(a,i0,a,es8.1,a,es12.5)') ' (increment ', now%increment + 1, ' of ', &
       now%control%last_size, ' s, last equilibrium at time ', now%total_time
     text = outcome%failure//trim(place)//')'
+    if (now%control%is_direct) text = text//'; the increment is fixed (DIRECT): leave DIRECT '// &
+                                      'out, so that the increment may be cut'
   end function failure_text
 
   !> A whole number as text.

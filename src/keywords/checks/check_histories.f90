@@ -109,7 +109,8 @@ contains
     associate (plan => model%problem%steps(s))
       if (plan%duration/plan%first_increment > real(most_samples, rk)) return
       call start_control(plan, plan%procedure%has_inertia, control)
-      smallest = plan%first_increment
+      if (control%finest > 0.0_rk) control%size = control%finest ! with *CONTROLS, ACCURACY
+      smallest = control%size
     end associate
     t = 0.0_rk
     largest = 0.0_rk

@@ -66,7 +66,8 @@ contains
   logical function are_equal(old, new)
     type(card), intent(in) :: old, new
     integer :: i, j
-    are_equal = size(old%parameters) == size(new%parameters) .and. old%num_lines == new%num_lines
+    are_equal = size(old%parameters) == size(new%parameters) &
+                .and. old%num_lines == new%num_lines .and. new%num_lines > 0
     do i = 1, size(new%parameters)
       associate (name => new%parameters(i)%name)
         if (are_equal) are_equal = old%has(name)

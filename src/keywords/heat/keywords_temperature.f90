@@ -176,10 +176,12 @@ contains
     type(draft), intent(in) :: model
     type(heat_rule), intent(in) :: rule, later(:)
     type(heat_rule) :: rest
-    logical :: is_settled(model%problem%mesh%num_nodes)
+    logical :: is_settled(model%problem%mesh%num_nodes), is_idle
     integer :: i
     is_settled = .false.
+    is_idle = model%problem%steps(model%num_steps)%procedure%finds_modes
     do i = 1, size(later)
+      if (is_idle) exit ! rules of a *FREQUENCY step have no effect
       if (.not. later(i)%goes_on(model%problem%amplitudes)) is_settled(later(i)%nodes) = .true.
     end do
     rest = rule

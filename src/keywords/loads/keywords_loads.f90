@@ -212,6 +212,7 @@ contains
       if (found == 0) cycle
       push%faces = model%problem%surfaces(found)
       call read_variation(this, line, push, faults)
+      if (allocated(item)) deallocate (item) ! of a line that changes a load of an earlier step
       allocate (item, source=push)
       call put_load(model, item, 'pressure '//this%word_at(line, 1), 'DSLOAD', &
                     this%word_at(line, 1)//trim(merge(' HP', '   ', push%is_hydrostatic)), &

@@ -21,7 +21,8 @@ contains
     do s = 1, size(model%problem%steps)
       model%problem%steps(s)%changes_stage = model%problem%stages%changes_elements(s) &
                                              .or. hardens(model, s, .false.) &
-                                             .or. hardens(model, s - 1, .true.)
+                                             .or. hardens(model, s - 1, .true.) &
+                                             .or. hardens(model, last_timed(model, s), .true.)
     end do
     if (.not. allocated(model%problem%stages%is_absent)) return
     model%problem%stages%material = model%problem%mesh%material_of_element
@@ -74,6 +75,16 @@ contains
       end associate
     end do
   end subroutine note_grouted
+
+  !> The last step before that took time, 0 for none: the energy of grout that has hardened before a
+  !> *FREQUENCY step is booked in the step after it.
+  pure integer function last_timed(model, s)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    do last_timed = s - 1, 1, -1
+      if (.not. model%problem%steps(last_timed)%procedure%finds_modes) exit
+    end do
+  end function last_timed
 
   !> Whether a step has grout with, or without, pressure.
   pure logical function hardens(model, s, has_pressure)

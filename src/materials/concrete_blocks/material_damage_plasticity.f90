@@ -245,9 +245,15 @@ contains
     do i = 1, size(factor)
       factor(i) = 1.0_rk
       if (state%is_elastic(i)) cycle
-      effective = norm2(elastic_stress(self%model, state%strain(:, i) &
-                                       - state%internal(:last_strain, i)))
-      if (effective > 0.0_rk) factor(i) = min(1.0_rk, norm2(state%stress(:, i))/effective)
+      effective = size_of(elastic_stress(self%model, state%strain(:, i) &
+                                         - state%internal(:last_strain, i)))
+      if (effective > 0.0_rk) factor(i) = min(1.0_rk, size_of(state%stress(:, i))/effective)
     end do
   end subroutine find_stiffness_factors
+
+  !> Norm of a stress tensor, the same in all axes: shear stresses stand in it twice [Pa].
+  pure real(rk) function size_of(stress)
+    real(rk), intent(in) :: stress(6) !< 11, 22, 33, 12, 13, 23 [Pa]
+    size_of = sqrt(sum(stress(:3)**2) + 2.0_rk*sum(stress(4:)**2))
+  end function size_of
 end module material_damage_plasticity

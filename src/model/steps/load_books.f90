@@ -189,8 +189,8 @@ contains
     integer :: i, used
     if (.not. allocated(self%entries)) return
     self%entries%is_new = .false.
-    self%entries%is_replaced = .false.
     if (is_perturbation) return
+    self%entries%is_replaced = .false.
     used = 0
     self%first(:self%num_names) = 0
     do i = 1, self%num_entries

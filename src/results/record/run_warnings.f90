@@ -71,7 +71,7 @@ contains
     type(state), intent(in) :: now
     associate (plan => model%steps(now%step))
       if (.not. plan%follows_accuracy()) return
-      if (now%energy%shows_impacts()) then
+      if (size(model%joints) > 0 .and. now%energy%shows_impacts()) then
         call self%warn_once('step '//plan%name//': impacts of joints take much of the energy '// &
                             '(numerical, in the energy balance), and ACCURACY does not bound '// &
                             'their error; take a smaller largest increment')

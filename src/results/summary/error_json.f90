@@ -42,7 +42,7 @@ contains
         if (.not. follows_error(part)) cycle
         call json%open_object(model%steps(part%step)%name)
         call json%put_real(model%steps(part%step)%controls%accuracy, 'wanted')
-        if (part%energy%shows_impacts()) then
+        if (size(model%joints) > 0 .and. part%energy%shows_impacts()) then
           call json%put_text('impacts of joints take much of the energy', 'not_known')
         else
           call json%put_real(part%accuracy%relative(), 'estimated_error')
@@ -98,7 +98,8 @@ contains
     if (joint /= '') call json%put_text(joint, 'joint')
     if (found%total(value) >= 0.0_rk) call json%put_real(found%total(value), 'error')
     if (found%is_stray(value)) then
-      call json%put_text('time, mesh: bodies rock, slide or hit each other', 'not_known')
+      call json%put_text('time, mesh: bodies rock or slide, or openings do not follow the '// &
+                         'modes', 'not_known')
     end if
     if (found%has_time(value)) call json%put_real(found%time, 'time')
     if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')

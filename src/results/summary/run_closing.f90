@@ -200,7 +200,7 @@ contains
           if (n > 1) text = text//','
           text = text//' '//as_text(part%of_size(k))//' of '//as_short_text(part%sizes(k))//' s'
         end do
-        if (part%energy%shows_impacts()) then
+        if (size(model%joints) > 0 .and. part%energy%shows_impacts()) then
           text = text//'; error in time not known: impacts of joints take '// &
                  as_short_text(100.0_rk*part%energy%numerical/part%energy%largest)// &
                  ' % of the energy'

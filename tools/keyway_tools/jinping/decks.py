@@ -112,7 +112,7 @@ def notes_of(deck: JinpingDeck) -> list[str]:
         "crown, the V of the valley; so is the symmetry",
         "Motion (assumed): that of input/xingbiling: x and y 0.269 g, z 2/3 of it, 20 s",
         "Damping (assumed): 5 % at 1 and 5 Hz, between which the first modes are, Rayleigh on the "
-        "stiffness without damage",
+        f"stiffness {'with its' if 'CURRENT' in deck.options else 'without'} damage",
         f"Increments of {deck.increment or increment_of(deck.law):g} s (assumed): the paper does "
         "not give its own",
         "Joint stiffness (paper_notes.md, 3): k_n = E / 2 cm = 1.25e12 Pa/m, "
