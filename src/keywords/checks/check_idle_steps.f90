@@ -218,14 +218,24 @@ contains
     integer, intent(in) :: step(:) !< of each card
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    if (model%cards(number)%has('VARIABLE') .or. model%cards(number)%has('HISTORY')) return
+    logical :: is_history, ends_output
+    ends_output = model%cards(number)%has('FREQUENCY') .and. &
+                  model%cards(number)%integer('FREQUENCY') == 0
+    is_history = model%cards(number)%has('HISTORY')
+    if (model%cards(number)%has('VARIABLE')) return
+    if (is_history .neqv. ends_output) return ! a history may stand alone, 0 ends fields
     do i = number + 1, size(step)
       if (step(i) /= step(number) .or. is_keyword(model%cards(i), 'OUTPUT')) exit
       if (is_keyword(model%cards(i), 'NODE OUTPUT')) return
       if (is_keyword(model%cards(i), 'ELEMENT OUTPUT')) return
     end do
-    call model%cards(number)%warn(faults, 'has no effect: no *NODE OUTPUT or *ELEMENT OUTPUT '// &
-                                  'follows in the step')
+    if (is_history) then
+      call model%cards(number)%warn(faults, 'FREQUENCY=0 has no effect: histories of earlier '// &
+                                    'steps go on')
+    else
+      call model%cards(number)%warn(faults, 'has no effect: no *NODE OUTPUT or *ELEMENT OUTPUT '// &
+                                    'follows in the step')
+    end if
   end subroutine warn_of_empty_output
 
   !> Requests that write nothing, and velocities and accelerations that are zero.

@@ -89,7 +89,7 @@ contains
         call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
                            ' does not exist', article//' '//kind//' of the model')
       else if (this%keyword /= 'NSET' .and. this%keyword /= 'ELSET' .and. &
-               sets%find(this%word_at(line, field)) > 0) then
+               is_another_set(sets, this%word_at(line, field), found)) then
         call this%warn_at(faults, line, field, "'"//this%text_at(line, field)//"' is "//kind// &
                           ' '//this%text_at(line, field)//' here, not the '//kind// &
                           ' set of this name', 'a name with a letter for the set')
@@ -104,6 +104,18 @@ contains
     end if
     members = pack([found], [found > 0])
   end subroutine members_at
+
+  !> Whether a set of this name holds something else than one member.
+  pure logical function is_another_set(sets, name, member)
+    type(set_list), intent(in) :: sets
+    character(*), intent(in) :: name !< upper case
+    integer, intent(in) :: member !< position
+    integer :: found
+    found = sets%find(name)
+    is_another_set = found > 0
+    if (is_another_set) is_another_set = size(sets%sets(found)%members) /= 1 &
+                                         .or. any(sets%sets(found)%members /= member)
+  end function is_another_set
 
   subroutine fault_unknown_set(this, line, field, kind, sets, faults)
     type(card), intent(in) :: this

@@ -65,7 +65,8 @@ contains
     type(keyword), intent(out) :: spec
     spec%name = 'OUTPUT'
     spec%meaning = 'Opens requests of *NODE OUTPUT and *ELEMENT OUTPUT: FIELD for fields of '// &
-                   'the whole model, HISTORY for histories of sets.'
+                   'the whole model, HISTORY for histories of sets. FIELD, FREQUENCY=0 ends '// &
+                   'the fields of earlier steps.'
     spec%example = '*OUTPUT, FIELD, FREQUENCY=10'//nl//'*NODE OUTPUT'//nl//'U'
     call add_frequency(spec, '')
     deallocate (spec%columns)
@@ -94,6 +95,8 @@ contains
     if (this%has('NUMBER INTERVAL')) model%rhythm%most = this%integer('NUMBER INTERVAL')
     if (this%has('TIME INTERVAL')) model%rhythm%interval = this%real('TIME INTERVAL')
     model%output_is_history = this%has('HISTORY')
+    if (this%has('FREQUENCY') .and. model%rhythm%frequency == 0 .and. &
+        .not. model%output_is_history) call clear_files(model, .true., .true.)
     if (.not. this%has('VARIABLE')) return
     if (model%output_is_history) then
       call this%ignore(faults, 'VARIABLE='//this%word('VARIABLE')//' with HISTORY has no '// &
