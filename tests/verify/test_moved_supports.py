@@ -204,3 +204,28 @@ def test_a_base_that_is_not_held_is_warned_of(keyway, held):
     deck = block.deck(WEIGHT + "*END STEP\n").replace("BASE, 1, 3", held)
     run = keyway(deck)
     assert "belongs to joint elements alone and is not held in all directions" in run.stderr
+
+
+def test_new_supports_end_an_acceleration(keyway):
+    """As in Abaqus: OP=NEW takes accelerations of supports away, as a base motion of zero."""
+    mesh, number = box_mesh((1, 1, 2), stretched((1.0, 1.0, 2.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
+    cards = elastic(1e4, 0.2, 1.0) + "*BOUNDARY\nBASE, 1, 3\n"
+    cards += "*AMPLITUDE, NAME=Q\n0., 0., 0.1, 1., 0.2, -0.5, 0.3, 0.7\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.02, 0.3\n{}*NODE PRINT, NSET=TOP\nU, A\n*END STEP\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.02, 0.3\n{}*END STEP\n"
+    still = "*BASE MOTION, DOF=1, AMPLITUDE=Q, SCALE="
+    pairs = (
+        (
+            "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=Q\nBASE, 1, 1, 3.\n",
+            "*BOUNDARY, OP=NEW\nBASE, 1, 3\n",
+        ),
+        (f"{still}3.\n", f"{still}0.\n"),
+    )
+    ours, other = (
+        keyway(brick_deck(mesh, "C3D8", cards.format(*pair)), name=f"run{i}").csv("node_TOP")
+        for i, pair in enumerate(pairs)
+    )
+    assert np.abs(other["U1"][other["step"] == 2]).max() > 1e-4
+    for column in ("U1", "A1", "U3"):
+        assert ours[column] == pytest.approx(other[column], abs=1e-12)

@@ -155,6 +155,7 @@ module model_draft
     integer :: current_procedure = 0 !< card of the procedure of the step being read
     real(rk) :: total_time = 0.0_rk !< at the start of the step [s]
     type(moved_direction) :: moved(3) !< accelerations of supports in this step
+    logical :: is_shaken(3) = .false. !< by accelerations of supports of an earlier step
     logical :: holds_motion = .false. !< a base motion of an earlier step keeps its last value
     logical :: has_new_nodal = .false. !< *NODE FILE or a similar keyword in this step
     logical :: has_new_elemental = .false. !< *EL FILE or a similar keyword in this step

@@ -7,7 +7,7 @@ module keywords_boundary
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: find_amplitude, nodes_at
-  use moved_supports, only: note_acceleration
+  use moved_supports, only: note_acceleration, end_accelerations
   use nearest_words, only: nearest_choice
   use write_text, only: as_text
   implicit none
@@ -38,7 +38,8 @@ contains
                     default='MOD', choices='MOD | NEW'), &
               field('AMPLITUDE', kind_word, 'history of the values'), &
               field('TYPE', kind_choice, 'what is prescribed; ACCELERATION of all supports of '// &
-                    'a direction is the motion of the base, results are relative to it', &
+                    'a direction is the motion of the base, results are relative to it; '// &
+                    'OP=NEW ends it', &
                     default='DISPLACEMENT', choices=types, is_checked_later=.true.)])
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &
@@ -59,7 +60,10 @@ contains
     real(rk) :: value
     call find_amplitude(this, model, faults, history)
     call check_type(this, model, faults)
-    if (this%word('OP') == 'NEW') call model%supports%clear_old()
+    if (this%word('OP') == 'NEW') then
+      call model%supports%clear_old()
+      call end_accelerations(model)
+    end if
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
       call read_dofs(this, line, faults, first, last)

@@ -11,7 +11,7 @@ module moved_supports
   use write_text, only: as_text
   implicit none
   private
-  public :: note_acceleration, close_accelerations
+  public :: note_acceleration, close_accelerations, end_accelerations
 
 contains
 
@@ -48,6 +48,18 @@ contains
     call this%fault_at(faults, line, 4, 'the file of the record names its unit; the factor '// &
                        this%text_at(line, 4)//' is ambiguous', 'UNIT in *AMPLITUDE, or 1')
   end subroutine note_acceleration
+
+  !> *BOUNDARY, OP=NEW ends the accelerations of the supports of earlier steps.
+  subroutine end_accelerations(model)
+    type(draft), intent(inout) :: model
+    integer :: dof, ended
+    do dof = 1, size(model%is_shaken)
+      if (.not. model%is_shaken(dof)) cycle
+      call model%active_loads%take_over('BASE MOTION', as_text(dof), 'another motion', 0.0_rk, 0, &
+                                        ended)
+      model%is_shaken(dof) = .false.
+    end do
+  end subroutine end_accelerations
 
   !> Makes loads of the accelerations at the end of the step, when all its supports are known.
   subroutine close_accelerations(model, faults)
@@ -89,6 +101,7 @@ contains
         allocate (item, source=shaking)
         call put_load(model, item, 'base motion '//as_text(dof), 'BASE MOTION', as_text(dof), '', &
                       moved%value, moved%history)
+        model%is_shaken(dof) = .true.
       end if
     end associate
   end subroutine close_direction
