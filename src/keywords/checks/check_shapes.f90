@@ -1,14 +1,12 @@
 !> Warns of solids whose nodes are probably not in the order, or not the nodes, that were meant:
 !> different nodes at one place, one node twice, faces that are twisted.
 module check_shapes
-  use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use kinds, only: rk
   use mesh_faces, only: face_nodes
   use model_draft, only: draft
   use small_matrix, only: cross_product
-  use sorted_lists, only: sorted_unique
   use write_text, only: as_text
   implicit none
   private
@@ -45,42 +43,50 @@ contains
   end subroutine warn_of_shapes
 
   !> 1: different nodes at one place, 2: seven different nodes, 3: a twisted face, 0: none of these.
-  integer function kind_of_fault(model, e) result(kind)
+  pure integer function kind_of_fault(model, e) result(kind)
     type(draft), intent(in) :: model
     integer, intent(in) :: e !< position of the element
-    integer :: face
+    integer :: face, pair(2), num_different
+    call compare_nodes(model, e, num_different, pair)
     kind = 0
-    associate (nodes => model%problem%mesh%nodes(:, e))
-      if (any(pair_at_one_place(model, e) > 0)) then
-        kind = 1
-      else if (size(sorted_unique(nodes)) == num_corners - 1) then
-        kind = 2
-      else
-        do face = 1, 6
-          if (is_twisted(model%problem%mesh%x(:, face_nodes(model%problem%mesh, e, face)))) kind = 3
-        end do
-      end if
-    end associate
+    if (pair(1) > 0) then
+      kind = 1
+    else if (num_different == num_corners - 1) then
+      kind = 2
+    else
+      do face = 1, 6
+        if (is_twisted(model%problem%mesh%x(:, face_nodes(model%problem%mesh, e, face)))) kind = 3
+      end do
+    end if
   end function kind_of_fault
 
-  !> Two different nodes of an element at the same place; zeros without them.
-  pure function pair_at_one_place(model, e) result(pair)
+  !> Counts the different nodes of an element, and finds two of them at the same place.
+  pure subroutine compare_nodes(model, e, num_different, pair)
     type(draft), intent(in) :: model
     integer, intent(in) :: e !< position of the element
-    integer :: pair(2)
+    integer, intent(out) :: num_different
+    integer, intent(out) :: pair(2) !< zeros without such nodes
+    real(rk) :: x(3, num_corners), tolerance
+    logical :: is_repeated
     integer :: i, j
+    num_different = 1
     pair = 0
-    associate (nodes => model%problem%mesh%nodes(:, e), x => model%problem%mesh%x)
+    associate (nodes => model%problem%mesh%nodes(:, e))
+      x = model%problem%mesh%x(:, nodes)
+      tolerance = round_off*maxval(abs(x))
       do i = 2, num_corners
+        is_repeated = .false.
         do j = 1, i - 1
-          if (nodes(i) == nodes(j)) cycle
-          if (any(abs(x(:, nodes(i)) - x(:, nodes(j))) &
-                  > round_off*maxval(abs(x(:, nodes))))) cycle
-          pair = [nodes(j), nodes(i)]
+          if (nodes(i) == nodes(j)) then
+            is_repeated = .true.
+          else if (all(abs(x(:, i) - x(:, j)) <= tolerance)) then
+            pair = [nodes(j), nodes(i)]
+          end if
         end do
+        if (.not. is_repeated) num_different = num_different + 1
       end do
     end associate
-  end function pair_at_one_place
+  end subroutine compare_nodes
 
   !> Whether a diagonal divides a face into triangles whose normals differ by more than 60 degrees.
   !> A face with a repeated node is flat.
@@ -106,11 +112,11 @@ contains
     integer, intent(in) :: num !< elements with this fault
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: text, expected
-    integer :: pair(2)
+    integer :: pair(2), num_different
     associate (mesh => model%problem%mesh, spot => model%element_origin(e))
       select case (kind)
       case (1)
-        pair = pair_at_one_place(model, e)
+        call compare_nodes(model, e, num_different, pair)
         text = ' has two nodes at the same place: '//as_text(mesh%node_id(pair(1)))//' and '// &
                as_text(mesh%node_id(pair(2)))
         expected = 'eight different places, or the same node twice for a wedge'
