@@ -36,9 +36,11 @@ def test_unknown_option(on_ranks):
 @pytest.mark.parametrize("solver", ["DIRECT", "ITERATIVE"])
 def test_free_body(keyway, on_ranks, solver):
     """A block that hangs on the rock by one displacement moves freely: an error with both solvers,
-    and the summary says so.
+    and the summary says so. The node without elements leaves the error to them: without it the
+    deck is refused.
     """
-    block = BlockOnRock(coupling="*EQUATION\n2\n1, 3, 1., 160, 3, -1.\n")
+    coupling = "*NODE\n9999, 0., 0., 20.\n*EQUATION\n2\n1, 3, 1., 160, 3, -1.\n"
+    block = BlockOnRock(coupling=f"{coupling}2\n9999, 1, 1., 160, 1, -1.\n")
     keyway(block.deck(WEIGHT), code=1)
     run = on_ranks(2)(block.deck(WEIGHT), "--solver", solver, code=1)
     assert "free to move" in run.stderr
