@@ -110,7 +110,9 @@ contains
     integer :: b, free, first
     free = 1
     do b = 2, parts%num_blocks
-      if (norm2(motions(6*b - 5:6*b, :)) > norm2(motions(6*free - 5:6*free, :))) free = b
+      ! Of equal shares, which differ by round-off, the first.
+      if (norm2(motions(6*b - 5:6*b, :)) > (1.0_rk + no_share) &
+          *norm2(motions(6*free - 5:6*free, :))) free = b
     end do
     associate (own => motions(6*free - 5:6*free, :))
       call find_modes(matmul(own, transpose(own)), share, motion, error)
