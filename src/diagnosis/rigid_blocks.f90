@@ -14,6 +14,7 @@ module rigid_blocks
   implicit none
   private
   public :: block_set, find_blocks, find_tied_parts, jump_rows, add_supports, add_tie
+  public :: add_square
 
   type :: block_set
     integer :: num_blocks = 0
@@ -221,7 +222,6 @@ contains
     type(node_tie), intent(in) :: tie
     real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
     real(rk) :: row(6, parts%num_blocks)
-    integer, allocatable :: used(:)
     integer :: i, k, d, item_direction
     do i = 1, size(tie%node)
       do d = 1, 3
@@ -234,15 +234,22 @@ contains
           call add_node_motion(parts, x, tie%item(k), along(item_direction, -tie%weight(k)), row)
         end do
         row = row/sqrt(1.0_rk + sum(tie%weight(tie%first(i):tie%first(i + 1) - 1)**2))
-        associate (flat => reshape(row, [size(row)]))
-          used = pack([(k, k=1, size(flat))], abs(flat) > 0.0_rk)
-          do k = 1, size(used)
-            matrix(used, used(k)) = matrix(used, used(k)) + flat(used)*flat(used(k))
-          end do
-        end associate
+        call add_square(reshape(row, [size(row)]), matrix)
       end do
     end do
   end subroutine add_tie
+
+  !> Adds row^T row.
+  pure subroutine add_square(row, matrix)
+    real(rk), intent(in) :: row(:) !< (6*blocks) most are zero
+    real(rk), intent(inout) :: matrix(:, :) !< (6*blocks, 6*blocks)
+    integer, allocatable :: used(:)
+    integer :: k
+    used = pack([(k, k=1, size(row))], abs(row) > 0.0_rk)
+    do k = 1, size(used)
+      matrix(used, used(k)) = matrix(used, used(k)) + row(used)*row(used(k))
+    end do
+  end subroutine add_square
 
   !> A vector along an axis.
   pure function along(axis, length) result(vector)

@@ -11,7 +11,7 @@ module verify_blocks
   use guest_list, only: supports_of_step
   use kinds, only: rk
   use model_draft, only: draft
-  use rigid_blocks, only: add_supports, block_set, find_blocks, jump_rows
+  use rigid_blocks, only: add_square, add_supports, block_set, find_blocks, jump_rows
   use symmetric_modes, only: find_modes, null_space
   implicit none
   private
@@ -66,20 +66,15 @@ contains
     type(block_set), intent(in) :: blocks
     type(dam_joint), intent(in) :: joint
     real(rk), intent(inout) :: matrix(:, :) !< (6*blocks, 6*blocks)
-    real(rk) :: rows(6, blocks%num_blocks, 3), row(6*blocks%num_blocks)
+    real(rk) :: rows(6, blocks%num_blocks, 3)
     real(rk) :: friction, cohesion, strength
-    integer, allocatable :: used(:)
-    integer :: p, i, k, num_held
+    integer :: p, i, num_held
     call joint%law%limits(friction, cohesion, strength)
     num_held = merge(3, 1, max(friction, cohesion, strength) > 0.0_rk)
     do p = 1, joint%num_points
       call jump_rows(blocks, x, joint, p, rows)
       do i = 1, num_held
-        row = reshape(rows(:, :, i), [size(row)])
-        used = pack([(k, k=1, size(row))], abs(row) > 0.0_rk)
-        do k = 1, size(used)
-          matrix(used, used(k)) = matrix(used, used(k)) + row(used)*row(used(k))
-        end do
+        call add_square(reshape(rows(:, :, i), [size(matrix, 1)]), matrix)
       end do
     end do
   end subroutine add_joint

@@ -9,10 +9,10 @@ module motion_goes_on
   use global_vectors, only: largest_entry
   use kinds, only: rk
   use problem_definition, only: problem
-  use step_plan, only: step
+  use step_plan, only: step, step_before
   implicit none
   private
-  public :: keep_joints, keep_accelerations, has_same_unknowns, unbalanced_force, step_before
+  public :: keep_joints, keep_accelerations, has_same_unknowns, unbalanced_force
 
   !> Difference of unknowns that are the same, over the largest.
   real(rk), parameter :: same_share = 1.0e-6_rk
@@ -53,22 +53,13 @@ contains
     integer, intent(in) :: number !< of the step
     integer :: before
     is_same = .false.
-    before = step_before(model, number)
+    before = step_before(model%steps, number)
     if (before == 0) return
     associate (old => model%steps(before)%fixities, new => model%steps(number)%fixities)
       if (size(old) /= size(new)) return
       is_same = all(old%node == new%node .and. old%dof == new%dof)
     end associate
   end function has_same_supports
-
-  !> The last step before that took time: not one that finds modes. 0: there is none.
-  pure integer function step_before(model, number) result(before)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    do before = number - 1, 1, -1
-      if (.not. model%steps(before)%procedure%finds_modes) exit
-    end do
-  end function step_before
 
   !> Whether two vectors differ by round-off alone.
   logical function are_equal(x, y)

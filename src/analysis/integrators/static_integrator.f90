@@ -5,7 +5,7 @@ module static_integrator
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
-  use step_plan, only: step
+  use step_plan, only: step, step_before
   use free_blocks, only: exceeds_joints, name_free_block
   use joint_law, only: joint_state
   use joint_water, only: press_grout, update_uplift
@@ -14,7 +14,6 @@ module static_integrator
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
   use guest_forces, only: has_histories
-  use motion_goes_on, only: step_before
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: dam_system, build_structure, build_loads, build_origins
   use step_loads, only: load_group, step_time, external_force, gather_loads
@@ -144,7 +143,7 @@ contains
     logical :: has_changed
     integer :: before
     allocate (force(self%system%matrix%num_total), source=0.0_rk)
-    before = step_before(model, now%step)
+    before = step_before(model%steps, now%step)
     if (before == 0) return
     associate (plan => model%steps(before), system => self%system)
       call gather_loads(model, plan, system%numbers, system%matrix, [real(rk) ::], groups, &
@@ -163,7 +162,7 @@ contains
     integer, intent(in) :: number !< of the step
     integer :: before
     follows_motion = .false.
-    before = step_before(model, number)
+    before = step_before(model%steps, number)
     if (before > 0) follows_motion = model%steps(before)%procedure%has_inertia
   end function follows_motion
 

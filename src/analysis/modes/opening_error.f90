@@ -101,10 +101,9 @@ contains
   end function trend
 
   !> Which share of the changes of the opening the modes explain, in squares.
-  real(rk) function explained(own) result(share_of_modes)
+  real(rk) function explained(own, follows) result(share_of_modes)
     type(modal_error), intent(in) :: own
-    real(rk) :: follows(size(own%product))
-    follows = trend(own)
+    real(rk), intent(in) :: follows(:) !< (modes) the trend
     share_of_modes = (2.0_rk*dot_product(follows, own%product) &
                       - dot_product(follows, matmul(own%square, follows))) &
                      /max(tiny(1.0_rk), own%changes)
@@ -115,20 +114,26 @@ contains
   logical function rocks(own)
     type(modal_error), intent(in) :: own
     rocks = own%lost > most_lost*own%held
-    if (own%changes > 0.0_rk) rocks = rocks .or. explained(own) < least_explained
+    if (own%changes > 0.0_rk .and. .not. rocks) then
+      rocks = explained(own, trend(own)) < least_explained
+    end if
   end function rocks
 
   !> The largest opening so far [m], the largest error of openings [m], and their quotient; errors
   !> below 0 where bodies rock.
   function error_of_opening(own) result(found)
     type(modal_error), intent(in) :: own
-    real(rk) :: found(3)
+    real(rk), allocatable :: follows(:)
+    real(rk) :: found(3), share_of_modes
     found = 0.0_rk
     if (.not. own%opening > 0.0_rk) return
     found = [own%opening, -1.0_rk, -1.0_rk]
-    if (rocks(own)) return
-    found(2) = left_out*abs(dot_product(trend(own), own%at_most))
-    if (own%changes > 0.0_rk) found(2) = found(2)/sqrt(explained(own))
+    if (own%lost > most_lost*own%held) return
+    follows = trend(own)
+    share_of_modes = 1.0_rk
+    if (own%changes > 0.0_rk) share_of_modes = explained(own, follows)
+    if (share_of_modes < least_explained) return
+    found(2) = left_out*abs(dot_product(follows, own%at_most))/sqrt(share_of_modes)
     found(3) = found(2)/own%opening
   end function error_of_opening
 

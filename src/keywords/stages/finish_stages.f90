@@ -4,6 +4,7 @@ module finish_stages
   use diagnostics, only: diagnostic_list
   use model_draft, only: draft
   use stage_faces, only: complete_parts
+  use step_plan, only: step_before
   implicit none
   private
   public :: complete_stages
@@ -18,12 +19,15 @@ contains
     call check_places(model, faults)
     call note_grouted(model)
     if (.not. model%problem%stages%is_there_any()) return
-    do s = 1, size(model%problem%steps)
-      model%problem%steps(s)%changes_stage = model%problem%stages%changes_elements(s) &
-                                             .or. hardens(model, s, .false.) &
-                                             .or. hardens(model, s - 1, .true.) &
-                                             .or. hardens(model, last_timed(model, s), .true.)
-    end do
+    associate (steps => model%problem%steps)
+      do s = 1, size(steps)
+        ! Grout that has hardened before a *FREQUENCY step: its energy is booked in the step after it.
+        steps(s)%changes_stage = model%problem%stages%changes_elements(s) &
+                                 .or. hardens(model, s, .false.) &
+                                 .or. hardens(model, s - 1, .true.) &
+                                 .or. hardens(model, step_before(steps, s), .true.)
+      end do
+    end associate
     if (.not. allocated(model%problem%stages%is_absent)) return
     model%problem%stages%material = model%problem%mesh%material_of_element
     if (.not. faults%has_errors()) call complete_parts(model, faults)
@@ -75,16 +79,6 @@ contains
       end associate
     end do
   end subroutine note_grouted
-
-  !> The last step before that took time, 0 for none: the energy of grout that has hardened before a
-  !> *FREQUENCY step is booked in the step after it.
-  pure integer function last_timed(model, s)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: s !< step
-    do last_timed = s - 1, 1, -1
-      if (.not. model%problem%steps(last_timed)%procedure%finds_modes) exit
-    end do
-  end function last_timed
 
   !> Whether a step has grout with, or without, pressure.
   pure logical function hardens(model, s, has_pressure)

@@ -7,7 +7,7 @@ module step_plan
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
   public :: step_damping, step_reduction, initial_value, step_procedure, field_name_length
-  public :: grouting, output_rhythm
+  public :: grouting, output_rhythm, step_before
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
@@ -156,6 +156,15 @@ module step_plan
   real(rk), parameter :: round_off = 1.0e-9_rk !< of a number of increments
 
 contains
+
+  !> The last step before that took time: not one that finds modes. 0: there is none.
+  pure integer function step_before(steps, number) result(before)
+    type(step), intent(in) :: steps(:)
+    integer, intent(in) :: number !< of the step
+    do before = number - 1, 1, -1
+      if (.not. steps(before)%procedure%finds_modes) exit
+    end do
+  end function step_before
 
   !> Increments from one output to the next in a step. Where the card gives times, of the first
   !> increment.
