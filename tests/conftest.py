@@ -12,7 +12,8 @@ from documented import Documented
 from harness import ROOT, Program
 
 LIMIT_OF_LONG_TESTS = 3600  # [s]
-NUMERICAL = {"compatibility", "decks", "points", "results", "verify"}  # folders
+# Folders, and messages of decks: directions and free parts in them are computed.
+NUMERICAL = {"compatibility", "decks", "points", "results", "verify", "test_errors.py"}
 # They compare runs with each other, or look at files: one kind of kernels is enough.
 NOT_NUMERICAL = {
     "test_absent_effects.py", "test_changed_deck.py", "test_dropped_increment.py",
