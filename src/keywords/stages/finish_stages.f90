@@ -21,7 +21,7 @@ contains
     if (.not. model%problem%stages%is_there_any()) return
     associate (steps => model%problem%steps)
       do s = 1, size(steps)
-        ! Grout that has hardened before a *FREQUENCY step: its energy is booked in the step after it.
+        ! Grout that has hardened before a *FREQUENCY step: the step after it books the energy.
         steps(s)%changes_stage = model%problem%stages%changes_elements(s) &
                                  .or. hardens(model, s, .false.) &
                                  .or. hardens(model, s - 1, .true.) &
