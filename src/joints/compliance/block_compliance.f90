@@ -157,7 +157,7 @@ contains
     sorted_x = x(self%groups%row)
     if (self%groups%is_divided()) sorted_y = 0.0_rk
     !$omp parallel do schedule(dynamic) default(none) shared(self, sorted_x, sorted_y) &
-    !$omp if (self%groups%num_groups > 1)
+    !$omp if (self%groups%are_worth_threads())
     do j = 1, self%groups%num_groups
       if (self%groups%is_here(j)) call move_group(self, j, sorted_x, sorted_y)
     end do
@@ -177,7 +177,7 @@ contains
     sorted_x = x(self%groups%row)
     if (self%groups%is_divided()) sorted_y = 0.0_rk
     !$omp parallel do schedule(dynamic) default(none) &
-    !$omp shared(self, takes_part, sorted_x, sorted_y) if (self%groups%num_groups > 1)
+    !$omp shared(self, takes_part, sorted_x, sorted_y) if (self%groups%are_worth_threads())
     do j = 1, self%groups%num_groups
       if (self%groups%is_here(j)) call move_roughly(self, j, takes_part(j, :), sorted_x, sorted_y)
     end do

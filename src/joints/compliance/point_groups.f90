@@ -20,7 +20,7 @@ module point_groups
     !> (groups) rank of each group, from 0; not allocated where every rank has all groups
     integer, allocatable :: rank(:)
   contains
-    procedure :: members, rows, is_divided, is_here
+    procedure :: members, rows, is_divided, is_here, are_worth_threads
   end type group_list
 
   !> Joints are one group as long as they have so many points together. Their tangent is then
@@ -28,6 +28,9 @@ module point_groups
   integer, parameter :: most_together = 150
   !> A joint with more points is cut into patches.
   integer, parameter :: most_in_group = 400
+  !> Threads that wait are woken up for each loop, which takes as long as one thread needs for the
+  !> products of so many rows (docs/performance.md, "Joints").
+  integer, parameter :: fewest_rows = 2000
 
 contains
 
@@ -72,6 +75,12 @@ contains
       size_of(g) = -1
     end do
   end subroutine divide
+
+  !> Whether threads together do a loop over the groups sooner than one thread.
+  pure logical function are_worth_threads(self)
+    class(group_list), intent(in) :: self
+    are_worth_threads = self%num_groups > 1 .and. size(self%row) >= fewest_rows
+  end function are_worth_threads
 
   !> Whether the groups have ranks of their own.
   pure logical function is_divided(self)

@@ -64,7 +64,7 @@ contains
     kept = merge(kept_share, 0.0_rk, size(self%group) > 1 .and. .not. self%is_first)
     self%is_first = .false.
     is_single = self%is_single .and. size(self%group) > 1
-    !$omp parallel do schedule(dynamic) default(none) if (size(self%group) > 1) &
+    !$omp parallel do schedule(dynamic) default(none) if (blocks%groups%are_worth_threads()) &
     !$omp shared(self, blocks, kept, is_single)
     do g = 1, size(self%group)
       if (.not. blocks%groups%is_here(g)) cycle
@@ -152,7 +152,7 @@ contains
     integer :: g
     sorted = x(blocks%groups%row)
     !$omp parallel do schedule(dynamic) default(none) shared(self, blocks, takes_part, sorted) &
-    !$omp if (size(self%group) > 1)
+    !$omp if (blocks%groups%are_worth_threads())
     do g = 1, size(self%group)
       associate (first => blocks%groups%first_row(g), next => blocks%groups%first_row(g + 1))
         if (.not. blocks%groups%is_here(g)) then
