@@ -23,6 +23,7 @@ set(sources
   iteration/equilibrium_linear.f90
   iteration/joint_forces.f90
   iteration/joint_iteration.f90
+  iteration/joint_parting.f90
   iteration/joint_policy.f90
   iteration/joint_problem.f90
   iteration/newton_condensed.f90

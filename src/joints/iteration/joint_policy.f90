@@ -8,6 +8,8 @@
 !>    iteration with the laws follows when the limits hardly change.
 !> 4. Where that does not converge: more sweeps, with the limits of the last pass and then with the
 !>    laws. An equilibrium with given limits counts if it is one of the laws, too.
+!> 5. From an equilibrium with parted points: Newton's iteration with their full law. What this
+!>    finds counts if fewer points have parted.
 !>
 !> In a static increment it ends as soon as Newton's iteration drives a block away without end, from
 !> the guess and from what the sweeps find.
@@ -24,6 +26,7 @@ module joint_policy
   use joint_iteration, only: linearise, measure_residual
   use joint_law, only: joint_state
   use joint_operator, only: jump_operator
+  use joint_parting, only: count_parted
   use joint_points, only: dam_joint
   use step_plan, only: step_controls
   use tresca_friction, only: update_bound
@@ -40,6 +43,7 @@ module joint_policy
     type(open_group), allocatable :: opened(:) !< (groups) C with open joints
     real(rk), allocatable :: closed_jump(:, :) !< (3, points) with closed, sticking joints [m]
     real(rk), allocatable :: force(:, :) !< (3, points) of the last iterate, then of sweeps [N]
+    real(rk), allocatable :: x(:) !< (all unknowns) of the last iterate, in solvers that have it
     integer, allocatable :: num_sweeps(:) !< before each of Newton's iterations
     type(error_type), allocatable :: failure !< of the linear solver
   contains
@@ -105,6 +109,22 @@ contains
     type(joint_field), intent(inout) :: field !< linearised
     type(joint_state), intent(inout) :: new(:)
     type(balance_outcome), intent(inout) :: outcome
+    call find_equilibrium(process, controls, joints, operator, old, field, new, outcome)
+    if (.not. outcome%has_converged) return
+    if (count_parted(joints, operator, old, new) == 0) return
+    call try_full_laws(process, controls, joints, operator, old, field, new, outcome)
+  end subroutine iterate_joints
+
+  !> Newton's iteration, sweeps and passes in turn.
+  subroutine find_equilibrium(process, controls, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field !< linearised
+    type(joint_state), intent(inout) :: new(:)
+    type(balance_outcome), intent(inout) :: outcome
     call process%run_newton(controls, joints, operator, old, field, new, outcome)
     if (is_done(process, controls, outcome)) return
     call process%find_closed(operator)
@@ -121,7 +141,43 @@ contains
     if (is_done(process, controls, outcome)) return
     call linearise_anew(process, joints, operator, old, field, new, outcome)
     call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
-  end subroutine iterate_joints
+  end subroutine find_equilibrium
+
+  !> Newton's iteration from an equilibrium with parted points, as if none had parted: iterates on
+  !> the way to the equilibrium may have opened points that stay closed. An equilibrium in which
+  !> fewer points have parted counts, else the one before.
+  subroutine try_full_laws(process, controls, joints, operator, old, field, new, outcome)
+    class(joint_process), intent(inout) :: process
+    type(step_controls), intent(in) :: controls
+    type(dam_joint), intent(in) :: joints(:)
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: old(:)
+    type(joint_field), intent(inout) :: field !< in equilibrium
+    type(joint_state), intent(inout) :: new(:) !< in equilibrium
+    type(balance_outcome), intent(inout) :: outcome
+    type(joint_field) :: kept_field
+    type(joint_state) :: kept_state(size(new))
+    type(balance_outcome) :: kept_outcome
+    real(rk), allocatable :: kept_x(:)
+    integer :: num_parted
+    num_parted = count_parted(joints, operator, old, new)
+    kept_field = field
+    kept_state = new
+    kept_outcome = outcome
+    if (allocated(process%x)) kept_x = process%x
+    field%num_openings = 0
+    call linearise_anew(process, joints, operator, old, field, new, outcome)
+    call process%run_newton(controls, joints, operator, old, field, new, outcome)
+    if (outcome%has_converged .and. .not. allocated(process%failure)) then
+      if (count_parted(joints, operator, old, new) < num_parted) return
+    end if
+    if (allocated(process%failure)) deallocate (process%failure)
+    kept_outcome%iterations = outcome%iterations
+    field = kept_field
+    new = kept_state
+    outcome = kept_outcome
+    if (allocated(process%x)) process%x = kept_x
+  end subroutine try_full_laws
 
   !> Gives up the limits of friction of the last pass. Their equilibrium counts if the laws have the
   !> same tractions there, within the tolerance of the residual.

@@ -30,7 +30,6 @@ module newton_full
   type, extends(joint_process) :: full_process
     class(full_equilibrium), pointer :: solver => null() !< during an increment
     type(force_balance) :: balance
-    real(rk), allocatable :: x(:) !< (all unknowns) of the last iterate
   contains
     procedure :: run_newton
     procedure :: find_response, find_closed

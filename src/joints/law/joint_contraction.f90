@@ -15,8 +15,8 @@ module joint_contraction
   use contraction_keyword, only: describe_contraction
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use joint_law, only: allocate_state, is_bare, joint_state, solid_behind, state_bonded, &
-                       state_open, state_slip, state_stick, traction_law
+  use joint_law, only: allocate_state, is_bare, joint_state, openings_to_part, solid_behind, &
+                       state_bonded, state_open, state_slip, state_stick, traction_law
   use kinds, only: rk
   use slip_dissipation, only: closing_work, opening_work, sliding_work
   implicit none
@@ -44,15 +44,11 @@ module joint_contraction
     procedure :: limits
   end type contraction_law
 
-  !> A point that opens this many times within one increment fails: it loses its strength, and
-  !> within the increment its cohesion (theory.md, 2.3).
-  integer, parameter :: openings_to_failure = 2
-
   !> History of one point.
   type :: point_state
     real(rk) :: gap !< with the shift of the contact [m]
     real(rk) :: jump(3), traction(3), slip(2), friction_work, fracture_work
-    real(rk) :: cohesion !< c, or 0 for a point that has failed within the increment [Pa]
+    real(rk) :: cohesion !< c, or 0 for a point that has parted within the increment [Pa]
     logical :: is_broken
     integer :: status
   end type point_state
@@ -174,7 +170,7 @@ contains
     real(rk), intent(out) :: iterate(:, :)
     real(rk), intent(out) :: tangent(:, :, :)
     type(point_state) :: before, after
-    logical :: has_failed
+    logical :: has_parted
     integer :: p
     do p = 1, size(jump, 2)
       before = point_state(old%gap(p) + old%shift(p), old%jump(:, p), old%traction(:, p), &
@@ -182,11 +178,12 @@ contains
                            self%cohesion, old%is_broken(p), old%status(p))
       if (is_bare(old, p)) before%cohesion = 0.0_rk
       after = before
-      has_failed = new%num_openings(p) >= openings_to_failure
-      if (has_failed) after%cohesion = 0.0_rk
+      ! A parted point has lost its strength, and its cohesion within the increment.
+      has_parted = new%num_openings(p) >= openings_to_part
+      if (has_parted) after%cohesion = 0.0_rk
       after%jump = jump(:, p)
       after%gap = old%gap(p) + new%shift(p)
-      if (.not. (before%is_broken .or. has_failed) .and. &
+      if (.not. (before%is_broken .or. has_parted) .and. &
           jump(1, p)*self%normal_stiffness <= self%strength) then
         call stay_bonded(self, after, iterate(:, p), tangent(:, :, p))
       else

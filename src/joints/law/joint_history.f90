@@ -10,9 +10,12 @@ module joint_history
   private
   public :: joint_state, allocate_state
   public :: state_open, state_stick, state_slip, state_bonded
-  public :: phase_absent, phase_contact, phase_full, is_bare, takes_grout
+  public :: phase_absent, phase_contact, phase_full, is_bare, takes_grout, openings_to_part
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
+
+  !> A point that the iteration of an increment opens so many times has parted (theory.md, 2.3).
+  integer, parameter :: openings_to_part = 2
 
   !> What a point may do, in models with stages.
   integer, parameter :: phase_absent = 0 !< nothing: an element behind the point is absent
