@@ -207,8 +207,10 @@ def test_a_base_that_is_not_held_is_warned_of(keyway, held):
     assert "belongs to joint elements alone and is not held in all directions" in run.stderr
 
 
-def test_new_supports_end_an_acceleration(keyway):
-    """As in Abaqus: OP=NEW takes accelerations of supports away, as a base motion of zero."""
+@pytest.mark.parametrize("change", ["*BOUNDARY, OP=NEW\nBASE, 1, 3\n", "*BOUNDARY\nBASE, 1, 1\n"])
+def test_supports_end_an_acceleration(keyway, change):
+    """As in Abaqus: OP=NEW takes accelerations of supports away, and displacements of the supports
+    replace them, as a base motion of zero does."""
     mesh, number = box_mesh((1, 1, 2), stretched((1.0, 1.0, 2.0)))
     mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
     cards = elastic(1e4, 0.2, 1.0) + "*BOUNDARY\nBASE, 1, 3\n"
@@ -219,7 +221,7 @@ def test_new_supports_end_an_acceleration(keyway):
     pairs = (
         (
             "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=Q\nBASE, 1, 1, 3.\n",
-            "*BOUNDARY, OP=NEW\nBASE, 1, 3\n",
+            change,
         ),
         (f"{still}3.\n", f"{still}0.\n"),
     )
@@ -230,6 +232,22 @@ def test_new_supports_end_an_acceleration(keyway):
     assert np.abs(other["U1"][other["step"] == 2]).max() > 1e-4
     for column in ("U1", "A1", "U3"):
         assert ours[column] == pytest.approx(other[column], abs=1e-12)
+
+
+def test_a_base_motion_replaces_an_acceleration(keyway):
+    """Supports that are given again do not end a *BASE MOTION."""
+    mesh, number = box_mesh((1, 1, 1), stretched((1.0, 1.0, 1.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
+    cards = elastic(1e4, 0.2, 1.0) + "*BOUNDARY\nBASE, 1, 3\n"
+    cards += "*AMPLITUDE, NAME=Q\n0., 0., 0.1, 1., 0.2, -0.5, 0.3, 0.7\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.02, 0.3\n*NODE PRINT, NSET=TOP\nU\n"
+    cards += "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=Q\nBASE, 1, 1, 3.\n*END STEP\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.02, 0.3\n*BASE MOTION, DOF=1, AMPLITUDE=Q, SCALE=3.\n"
+    ours, other = (
+        keyway(brick_deck(mesh, "C3D8", f"{cards}{more}*END STEP\n"), name=name).csv("node_TOP")
+        for name, more in (("ours", "*BOUNDARY\nBASE, 1, 3\n"), ("other", ""))
+    )
+    assert ours["U1"] == pytest.approx(other["U1"], abs=1e-15)
 
 
 @pytest.mark.parametrize("stiffness", [2.5e4, 2.5e5, 2.5e7])
