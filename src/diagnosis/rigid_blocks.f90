@@ -6,6 +6,7 @@
 module rigid_blocks
   use body_parts, only: root_of, unite
   use dam_mesh, only: node_tie
+  use guest_list, only: ties_of
   use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
@@ -18,8 +19,9 @@ module rigid_blocks
 
   type :: block_set
     integer :: num_blocks = 0
+    integer :: num_points = 0 !< of the blocks, the last: nodes without an element, each for itself
     integer, allocatable :: block_of(:) !< (nodes) 0: a node without an element
-    integer, allocatable :: example(:) !< (blocks) element with the lowest number (position)
+    integer, allocatable :: example(:) !< (blocks with elements) lowest element (position)
     real(rk), allocatable :: centre(:, :) !< (3, blocks) mean of the nodes [m]
     real(rk), allocatable :: radius(:) !< (blocks) [m]
   end type block_set
@@ -44,7 +46,8 @@ contains
   end subroutine find_blocks
 
   !> Finds the parts of a model that ties and equations alone connect: joints and springs count as
-  !> rigid.
+  !> rigid. Nodes of ties without an element pass on motions: each is a part, as a point. Those that
+  !> belong to something else, as a spring, are left out.
   subroutine find_tied_parts(model, parts)
     type(problem), intent(in) :: model
     type(block_set), intent(out) :: parts
@@ -65,8 +68,29 @@ contains
     end do
     call unite_bonds(bonds, parent)
     call number_blocks(model, parent, parts)
+    call ties_of(model%guests, ties)
+    do i = 1, size(ties)
+      call add_points(ties(i)%node, parent, parts)
+      call add_points(ties(i)%item(:ties(i)%first(size(ties(i)%node) + 1) - 1), parent, parts)
+    end do
     call measure_blocks(model%mesh%x, parts)
+    ! Any length: points do not rotate.
+    parts%radius(parts%num_blocks - parts%num_points + 1:) = maxval(parts%radius)
   end subroutine find_tied_parts
+
+  !> Makes blocks of nodes that no element and no bond has.
+  subroutine add_points(nodes, parent, parts)
+    integer, intent(in) :: nodes(:)
+    integer, intent(in) :: parent(:)
+    type(block_set), intent(inout) :: parts
+    integer :: i
+    do i = 1, size(nodes)
+      if (parts%block_of(nodes(i)) > 0 .or. parent(nodes(i)) > 0) cycle
+      parts%num_blocks = parts%num_blocks + 1
+      parts%num_points = parts%num_points + 1
+      parts%block_of(nodes(i)) = parts%num_blocks
+    end do
+  end subroutine add_points
 
   !> Unites the nodes of each element.
   subroutine unite_elements(model, with_joints, parent)

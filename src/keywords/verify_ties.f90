@@ -34,16 +34,22 @@ contains
     real(rk), allocatable :: by_ties(:, :), matrix(:, :), checked(:, :)
     real(rk), allocatable :: resistance(:), motions(:, :)
     integer, allocatable :: node(:), direction(:)
-    integer :: i, num_free
+    integer :: i, k, free, num_free, num_bodies
     call ties_of(model%problem%guests, ties)
     if (size(ties) == 0) return
     call find_tied_parts(model%problem, parts)
-    if (parts%num_blocks < 2 .or. parts%num_blocks > most_parts) return
-    if (.not. all(have_elements(parts, ties))) return ! nodes without elements may pass on motions
+    num_bodies = parts%num_blocks - parts%num_points
+    if (num_bodies < 2 .or. parts%num_blocks > most_parts) return
+    if (.not. all(have_parts(parts, ties))) return ! nodes of springs may pass on motions
     allocate (by_ties(6*parts%num_blocks, 6*parts%num_blocks), source=0.0_rk)
     do i = 1, size(ties)
       call add_resistance(parts, model%problem%mesh%x, ties(i), by_ties, error)
       if (allocated(error)) return
+    end do
+    do i = num_bodies + 1, parts%num_blocks ! points do not rotate
+      do k = 6*i - 2, 6*i
+        by_ties(k, k) = 1.0_rk
+      end do
     end do
     checked = 0.0_rk*by_ties
     do i = 1, size(model%problem%steps)
@@ -59,18 +65,20 @@ contains
       if (allocated(error)) return
       num_free = count(resistance <= least_resistance*maxval(resistance))
       if (num_free == 0) cycle
-      call fault_part(model, i, parts, motions(:, :num_free), faults)
+      free = freest_body(num_bodies, motions(:, :num_free))
+      if (free == 0) cycle
+      call fault_part(model, i, parts, free, motions(6*free - 5:6*free, :num_free), faults)
       return
     end do
   end subroutine verify_tied_parts
 
-  !> Whether all nodes of a tie belong to elements.
-  elemental logical function have_elements(parts, tie)
+  !> Whether all nodes of a tie belong to parts.
+  elemental logical function have_parts(parts, tie)
     type(block_set), intent(in) :: parts
     type(node_tie), intent(in) :: tie
-    have_elements = all(parts%block_of(tie%node) > 0) &
-                    .and. all(parts%block_of(tie%item(:tie%first(size(tie%node) + 1) - 1)) > 0)
-  end function have_elements
+    have_parts = all(parts%block_of(tie%node) > 0) &
+                 .and. all(parts%block_of(tie%item(:tie%first(size(tie%node) + 1) - 1)) > 0)
+  end function have_parts
 
   !> Parts that *MODEL CHANGE has taken out in a step do not move.
   subroutine hold_absent(model, number, parts, matrix)
@@ -78,7 +86,7 @@ contains
     integer, intent(in) :: number !< of the step
     type(block_set), intent(in) :: parts
     real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
-    logical :: is_there(parts%num_blocks)
+    logical :: is_there(parts%num_blocks - parts%num_points)
     integer :: b, e, k
     if (.not. allocated(model%problem%stages%is_absent)) return
     is_there = .false.
@@ -89,7 +97,7 @@ contains
         if (b > 0) is_there(b) = .true.
       end do
     end associate
-    do b = 1, parts%num_blocks
+    do b = 1, size(is_there)
       if (is_there(b)) cycle
       do k = 6*b - 5, 6*b
         matrix(k, k) = matrix(k, k) + 1.0_rk
@@ -97,26 +105,33 @@ contains
     end do
   end subroutine hold_absent
 
-  !> Reports the part with the largest share in the free motions.
-  subroutine fault_part(model, number, parts, motions, faults)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    type(block_set), intent(in) :: parts
+  !> The part with elements that has the largest share in the free motions; 0 for none.
+  pure integer function freest_body(num_bodies, motions) result(free)
+    integer, intent(in) :: num_bodies !< the first parts
     real(rk), intent(in) :: motions(:, :) !< (6*parts, motions) orthonormal
-    type(diagnostic_list), intent(inout) :: faults
-    type(error_type), allocatable :: error
-    real(rk), allocatable :: share(:), motion(:, :)
-    character(:), allocatable :: text
-    integer :: b, free, first
+    integer :: b
     free = 1
-    do b = 2, parts%num_blocks
+    do b = 2, num_bodies
       ! Of equal shares, which differ by round-off, the first.
       if (norm2(motions(6*b - 5:6*b, :)) > (1.0_rk + no_share) &
           *norm2(motions(6*free - 5:6*free, :))) free = b
     end do
-    associate (own => motions(6*free - 5:6*free, :))
-      call find_modes(matmul(own, transpose(own)), share, motion, error)
-    end associate
+    if (norm2(motions(6*free - 5:6*free, :))**2 <= no_share) free = 0
+  end function freest_body
+
+  !> Reports a part that is free.
+  subroutine fault_part(model, number, parts, free, own, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(block_set), intent(in) :: parts
+    integer, intent(in) :: free !< part
+    real(rk), intent(in) :: own(:, :) !< (6, motions) its share in the free motions
+    type(diagnostic_list), intent(inout) :: faults
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: share(:), motion(:, :)
+    character(:), allocatable :: text
+    integer :: first
+    call find_modes(matmul(own, transpose(own)), share, motion, error)
     if (allocated(error)) return
     first = findloc(share > no_share, .true., 1)
     if (first == 6) then

@@ -173,6 +173,9 @@ def test_a_gap_of_the_mesh_that_closes_is_told(tmp_path, program_path):
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
     assert "CONTACT1: open by up to 1e-4 in the mesh, closed at the end of all" in done.stderr
     assert "never open" not in done.stderr
+    joint = json.loads((tmp_path / "gap.json").read_text())["joints"]["CONTACT1"]
+    assert joint["open_in_mesh"] == pytest.approx(1e-4, rel=1e-9)  # digits of 1.0001
+    assert joint["opening"]["anywhere"]["value"] == 0.0
 
 
 def test_fields_that_static_steps_lack_are_told_once(tmp_path, program_path):

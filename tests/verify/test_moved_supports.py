@@ -7,6 +7,7 @@ import pytest
 from brick_decks import brick_deck, elastic, last_state
 from joint_decks import Block
 from keyway_tools.box_mesh import box_mesh, stretched
+from tied_blocks import Blocks, node_set
 
 
 def test_a_strained_block_is_at_rest_in_statics_and_dynamics(keyway):
@@ -206,8 +207,10 @@ def test_a_base_that_is_not_held_is_warned_of(keyway, held):
     assert "belongs to joint elements alone and is not held in all directions" in run.stderr
 
 
-def test_new_supports_end_an_acceleration(keyway):
-    """As in Abaqus: OP=NEW takes accelerations of supports away, as a base motion of zero."""
+@pytest.mark.parametrize("change", ["*BOUNDARY, OP=NEW\nBASE, 1, 3\n", "*BOUNDARY\nBASE, 1, 1\n"])
+def test_supports_end_an_acceleration(keyway, change):
+    """As in Abaqus: OP=NEW takes accelerations of supports away, and displacements of the supports
+    replace them, as a base motion of zero does."""
     mesh, number = box_mesh((1, 1, 2), stretched((1.0, 1.0, 2.0)))
     mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
     cards = elastic(1e4, 0.2, 1.0) + "*BOUNDARY\nBASE, 1, 3\n"
@@ -218,7 +221,7 @@ def test_new_supports_end_an_acceleration(keyway):
     pairs = (
         (
             "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=Q\nBASE, 1, 1, 3.\n",
-            "*BOUNDARY, OP=NEW\nBASE, 1, 3\n",
+            change,
         ),
         (f"{still}3.\n", f"{still}0.\n"),
     )
@@ -229,3 +232,37 @@ def test_new_supports_end_an_acceleration(keyway):
     assert np.abs(other["U1"][other["step"] == 2]).max() > 1e-4
     for column in ("U1", "A1", "U3"):
         assert ours[column] == pytest.approx(other[column], abs=1e-12)
+
+
+def test_a_base_motion_replaces_an_acceleration(keyway):
+    """Supports that are given again do not end a *BASE MOTION."""
+    mesh, number = box_mesh((1, 1, 1), stretched((1.0, 1.0, 1.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "TOP": number[:, :, -1].ravel()}
+    cards = elastic(1e4, 0.2, 1.0) + "*BOUNDARY\nBASE, 1, 3\n"
+    cards += "*AMPLITUDE, NAME=Q\n0., 0., 0.1, 1., 0.2, -0.5, 0.3, 0.7\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.02, 0.3\n*NODE PRINT, NSET=TOP\nU\n"
+    cards += "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=Q\nBASE, 1, 1, 3.\n*END STEP\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.02, 0.3\n*BASE MOTION, DOF=1, AMPLITUDE=Q, SCALE=3.\n"
+    ours, other = (
+        keyway(brick_deck(mesh, "C3D8", f"{cards}{more}*END STEP\n"), name=name).csv("node_TOP")
+        for name, more in (("ours", "*BOUNDARY\nBASE, 1, 3\n"), ("other", ""))
+    )
+    assert ours["U1"] == pytest.approx(other["U1"], abs=1e-15)
+
+
+@pytest.mark.parametrize("stiffness", [2.5e4, 2.5e5, 2.5e7])
+def test_a_held_block_above_a_gap(keyway, stiffness):
+    """A block in mm moves by 0.5 towards another one, 1 below. Nothing resists: the round-off of
+    closed joints, which the factored matrix has, counts as none."""
+    blocks = Blocks()
+    blocks.add("A", (1, 0.0, 1e4), (1, 0.0, 1e4), (1, 0.0, 1e4))
+    blocks.add("B", (1, 0.0, 1e4), (1, 0.0, 1e4), (1, 10001.0, 20001.0))
+    cards = node_set("BASE", blocks.side("A", "Z0")) + node_set("TOP", blocks.side("B", "Z1"))
+    cards += f"*JOINT LAW, NAME=LAW, KN={stiffness!r}, FRICTION=0.5, TENSILE STRENGTH=1.\n"
+    cards += "*JOINT, NAME=J, LAW=LAW, CLEARANCE=MEASURED\nB_Z0, A_Z1\n"
+    cards += "*BOUNDARY\nBASE, 1, 3\nTOP, 1, 3\n*STEP\n*STATIC\n*JOINT PRINT, JOINT=J\n"
+    cards += "*BOUNDARY\nTOP, 3, 3, -0.5\n*END STEP\n"
+    run = keyway(blocks.deck({"": "*DENSITY\n1.\n*ELASTIC\n25e3, 0.\n"}, cards))
+    assert run.json["steps"][0]["increments"] == 1
+    # Round-off times the stiffness of the joint over that of the block, 1e7.
+    assert run.csv("joint_J")["opening"] == pytest.approx(0.5, abs=1e-8)

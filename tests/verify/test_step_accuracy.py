@@ -128,6 +128,21 @@ def test_limits_of_the_data_line(keyway):
     assert max(sizes_of(keyway(still))) == pytest.approx(2.0)
 
 
+def test_a_first_increment_longer_than_the_samples(keyway):
+    """No increment is longer than the samples, unless the deck names the largest. A jump of a load
+    is no sample."""
+    still = "*CONTROLS, ACCURACY=0.5\n"
+    deck = column(1, "noise", 4.0 * FIRST, still)
+    jump = f"*AMPLITUDE, NAME=JUMP\n0., 0., 5., 0., 5.00001, 1., {DURATION}, 1.\n*BOUNDARY\n"
+    push = "*CLOAD, AMPLITUDE=JUMP\nTOP, 3, 1e-3\n*BASE MOTION"
+    deck = deck.replace("*BOUNDARY\n", jump, 1).replace("*BASE MOTION", push, 1)
+    assert max(sizes_of(keyway(deck))) == pytest.approx(1.0)
+    data = f"{4.0 * FIRST!r}, {DURATION}\n"
+    named = deck.replace(data, f"{data.strip()}, , {4.0 * FIRST!r}\n")
+    assert named != deck
+    assert max(sizes_of(keyway(named, name="named"))) == pytest.approx(4.0)
+
+
 def test_regular_output(keyway):
     """FREQUENCY counts first increments: output comes at regular times."""
     more = "*NODE PRINT, NSET=BASE, FREQUENCY=5\nRF\n"

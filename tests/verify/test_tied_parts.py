@@ -66,3 +66,19 @@ def test_parts_that_are_not_there_need_no_support(keyway):
     run = keyway(deck)
     assert run.json["status"] == "finished"
     assert np.isfinite(run.json["steps"][0]["energy"]["strain"])
+
+
+@pytest.mark.parametrize("pins", [2, 4])
+def test_nodes_without_elements_pass_on_motions(keyway, pins):
+    """The corners of two faces follow nodes without elements, one for each pair of corners. Two
+    pairs leave a hinge; four hold the block."""
+    blocks = Blocks()
+    blocks.add("A", (1, 0.0, 1.0), (1, 0.0, 1.0), (1, 0.0, 1.0))
+    blocks.add("B", (1, 0.0, 1.0), (1, 0.0, 1.0), (1, 1.0, 2.0))
+    cards = node_set("FEET", blocks.side("A", "Z0")) + "*BOUNDARY\nFEET, 1, 3\n"
+    pairs = list(zip(blocks.side("B", "Z0"), blocks.side("A", "Z1"), strict=True))[:pins]
+    for extra, (a, b) in enumerate(pairs, 1001):
+        cards += f"*NODE\n{extra}, 0.5, 0.5, 5.\n*MPC\n"
+        cards += f"PIN, {a + 1}, {extra}\nPIN, {b + 1}, {extra}\n"
+    run = keyway(blocks.deck(LAW, cards + WEIGHT), code=0 if pins == 4 else 2)
+    assert ("free to move" in run.stderr) == (pins == 2)

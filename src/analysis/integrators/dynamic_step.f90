@@ -126,7 +126,7 @@ contains
       call update_uplift(model, system%operator, now%joints, system%groups, costs, has_changed)
       call external_force(system%groups, model%amplitudes, when, own%external)
       call find_support_rates(model, system, when, plan%first_increment, own%v, own%a)
-      call solids%start_lost_damping(model, system, plan, now)
+      call solids%start_lost_damping(model, system, plan, last, goes_on, now)
       call multiply(system%matrix, system%mass, own%v, own%momentum)
       call system%find_damping_force(own%v, own%viscous)
       call sum_contact(system%operator, now)

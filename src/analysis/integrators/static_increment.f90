@@ -11,7 +11,7 @@ module static_increment
   use problem_definition, only: problem
   use joint_law, only: joint_state
   use joint_operator, only: jump_operator
-  use joint_forces, only: gather_tractions
+  use joint_forces, only: gather_jumps, gather_tractions, reference_stiffness
   use analysis_state, only: motion, state
   use state_transfer, only: sum_contact
   use equilibrium, only: balance_outcome
@@ -24,7 +24,8 @@ module static_increment
   private
   public :: take_static_increment
 
-  !> Floor of the reference force, as a fraction of norm(diag(K) q).
+  !> Floor of the reference force, as a fraction of norm(diag(K) q) and of the forces of closed
+  !> joints at the jumps.
   real(rk), parameter :: idle_share = 1.0e-6_rk
 
 contains
@@ -50,7 +51,7 @@ contains
         call solids%set_internal(new)
         call sum_contact(system%operator, after)
         new%balanced = 0.0_rk
-        after%largest_force = reference_force(system%diagonal, solids, before, after)
+        after%largest_force = reference_force(model, system, solids, before, after)
         call task%check_balance(new%external(:n) - new%internal(:n) - new%contact(:n), &
                                 after%largest_force, outcome)
         if (.not. task%is_refined) exit
@@ -102,18 +103,33 @@ contains
 
   !> The largest of the forces before and after, reactions included. For a dam without stress (its
   !> load returned to zero, or it moves with its supports) the reference is the round-off of the
-  !> forces of its motion. For cracking solids the largest force so far is kept.
-  real(rk) function reference_force(diagonal, solids, before, after) result(force)
-    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+  !> forces of its motion. The matrix with closed joints has the round-off of their forces at open
+  !> jumps. For cracking solids the largest force so far is kept.
+  real(rk) function reference_force(model, system, solids, before, after) result(force)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
     type(solid_solver), intent(in) :: solids
     type(state), intent(in) :: before, after
-    associate (old => before%motion, new => after%motion)
+    associate (old => before%motion, new => after%motion, diagonal => system%diagonal)
       force = max(norm(old%external), norm(new%external), norm(old%internal), &
                   norm(new%internal), norm(old%contact), norm(new%contact), &
-                  idle_share*norm(diagonal*old%q), idle_share*norm(diagonal*new%q))
+                  idle_share*norm(diagonal*old%q), idle_share*norm(diagonal*new%q), &
+                  idle_share*closed_force(model, system, after))
     end associate
     if (solids%has_inelastic()) force = max(force, before%largest_force)
   end function reference_force
+
+  !> The force of closed joints at the jumps of a state.
+  real(rk) function closed_force(model, system, now) result(force)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(state), intent(in) :: now
+    real(rk), allocatable :: k_ref(:, :)
+    real(rk) :: jump(3, system%operator%num_points)
+    call reference_stiffness(model%joints, system%operator, k_ref)
+    call gather_jumps(system%operator, now%joints, jump)
+    force = norm(spread(system%operator%area, 1, 3)*k_ref*jump)
+  end function closed_force
 
   !> The part of the reference force that is known before the increment is solved.
   real(rk) function known_force(diagonal, before, after) result(force)

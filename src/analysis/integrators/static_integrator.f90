@@ -15,7 +15,7 @@ module static_integrator
   use equilibrium, only: balance_outcome
   use guest_forces, only: has_histories
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_system, only: dam_system, build_structure, build_loads, build_origins
+  use step_system, only: build_structure, build_loads, build_origins
   use step_loads, only: load_group, step_time, external_force, gather_loads
   use tangent_choice, only: tangent, choose_tangents
   use energy_account, only: open_account, add_static_work
@@ -102,10 +102,9 @@ contains
       if (plan%changes_stage) then
         call find_loads_before(self, model, now, own%release)
         own%release = own%internal + own%contact - own%release
-      else if (frees_supports(plan, now)) then
-        call find_freed(self, model, plan, now, own%release)
       else
-        return
+        call find_freed(self, model, plan, now, own%release)
+        if (.not. allocated(own%release)) return
       end if
       own%release(self%system%matrix%num_free + 1:) = 0.0_rk
       own%external = own%external + own%release
@@ -113,22 +112,29 @@ contains
     end associate
   end subroutine start_forces
 
-  !> What supports have carried that are not there any more. After a dynamic step the reaction
-  !> contains inertia and damping, which do not act any more: without them it balances the loads of
-  !> that step.
+  !> What supports have carried that are not there any more; not allocated without such supports.
+  !> After a dynamic step the reaction contains inertia and damping, which do not act any more:
+  !> without them it balances the loads of that step.
   subroutine find_freed(self, model, plan, now, release)
     type(static_method), intent(in) :: self
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(state), intent(in) :: now !< at the start of the step
     real(rk), allocatable, intent(out) :: release(:) !< (num_total) [N]
-    real(rk) :: reaction(self%system%matrix%num_total)
-    reaction = forces_of_freed(self%system, plan, now)
-    release = reaction
+    real(rk), allocatable :: reaction(:, :), loads(:)
+    integer :: k
+    if (.not. allocated(now%reaction)) return
+    reaction = now%reaction
+    do k = 1, size(plan%fixities)
+      reaction(plan%fixities(k)%dof, plan%fixities(k)%node) = 0.0_rk
+    end do
+    if (all(abs(reaction) <= 0.0_rk)) return
+    allocate (release(self%system%matrix%num_total))
+    call self%system%numbers%reduce(reaction, release)
     if (.not. follows_motion(model, now%step)) return
-    call find_loads_before(self, model, now, release)
+    call find_loads_before(self, model, now, loads)
     associate (own => now%motion)
-      release = merge(own%internal + own%contact - release, 0.0_rk, abs(reaction) > 0.0_rk)
+      release = merge(own%internal + own%contact - loads, 0.0_rk, abs(release) > 0.0_rk)
     end associate
   end subroutine find_freed
 
@@ -165,35 +171,6 @@ contains
     before = step_before(model%steps, number)
     if (before > 0) follows_motion = model%steps(before)%procedure%has_inertia
   end function follows_motion
-
-  !> Whether a support of the step before, with a reaction, is not there any more.
-  pure logical function frees_supports(plan, now)
-    type(step), intent(in) :: plan
-    type(state), intent(in) :: now !< at the start of the step
-    frees_supports = .false.
-    if (allocated(now%reaction)) frees_supports = any(abs(reactions_of_freed(plan, now)) > 0.0_rk)
-  end function frees_supports
-
-  !> Reactions of supports that are not there any more: they fade in the step.
-  pure function reactions_of_freed(plan, now) result(force)
-    type(step), intent(in) :: plan
-    type(state), intent(in) :: now !< at the start of the step
-    real(rk) :: force(size(now%reaction, 1), size(now%reaction, 2)) !< (3, nodes) [N]
-    integer :: k
-    force = now%reaction
-    do k = 1, size(plan%fixities)
-      force(plan%fixities(k)%dof, plan%fixities(k)%node) = 0.0_rk
-    end do
-  end function reactions_of_freed
-
-  !> The same in the unknowns of the step.
-  pure function forces_of_freed(system, plan, now) result(force)
-    type(dam_system), intent(in) :: system
-    type(step), intent(in) :: plan
-    type(state), intent(in) :: now !< at the start of the step
-    real(rk) :: force(system%matrix%num_total) !< [N]
-    call system%numbers%reduce(reactions_of_freed(plan, now), force)
-  end function forces_of_freed
 
   !> One increment. Water is where the joints are open at its end.
   subroutine advance(self, model, when, before, after, results, outcome, error)

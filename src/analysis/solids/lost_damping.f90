@@ -28,6 +28,7 @@ module lost_damping
     real(rk), allocatable :: force(:) !< (num_total) lost damping force of the last iterate [N]
   contains
     procedure :: open => choose_factors
+    procedure :: is_same
     procedure :: add_force
   end type damping_loss
 
@@ -48,6 +49,17 @@ contains
     self%beta = of_step + merge(model%materials%beta, 0.0_rk, model%materials%damps_current)
     if (size(model%inelastic) == 0 .or. .not. any(self%beta > 0.0_rk)) deallocate (self%beta)
   end subroutine choose_factors
+
+  !> Whether a step loses the damping that another one loses.
+  logical function is_same(self, model, other)
+    class(damping_loss), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: other
+    type(damping_loss) :: loss
+    call loss%open(model, other)
+    is_same = allocated(self%beta) .and. allocated(loss%beta)
+    if (is_same) is_same = all(abs(self%beta - loss%beta) <= 0.0_rk)
+  end function is_same
 
   !> Adds the lost damping force to the initial-stress force. Where the answers have tangents the
   !> loss of damping is added to them as a loss of stiffness.

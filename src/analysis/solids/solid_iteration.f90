@@ -29,7 +29,7 @@ module solid_iteration
   use conserving_stress, only: work_correction
   use solid_iterate, only: iterate_state, falls_too_slowly
   use solid_tangent, only: tangent_matrix
-  use step_plan, only: step
+  use step_plan, only: step, step_before
   use tangent_choice, only: tangent, choose_tangents
   implicit none
   private
@@ -109,16 +109,28 @@ contains
     call self%set_internal(now%motion)
   end subroutine open_solids
 
-  !> Adds the damping force that cracks have lost at the start of a dynamic step.
-  subroutine start_lost_damping(self, model, system, plan, now)
+  !> Adds the damping force that cracks have lost at the start of a dynamic step. A step that goes
+  !> on with the motion and the damping of the step before keeps the force of its last increment.
+  subroutine start_lost_damping(self, model, system, plan, last, goes_on, now)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(step), intent(in) :: plan
+    type(motion), intent(in) :: last !< at the end of the step before
+    logical, intent(in) :: goes_on !< with the motion of the step before
     type(state), intent(inout) :: now !< with its velocities
     type(increment_task) :: task
+    logical :: is_kept
     call self%loss%open(model, plan)
     if (.not. self%has_inelastic()) return
+    is_kept = goes_on .and. allocated(last%lost_damping)
+    if (is_kept) is_kept = self%loss%is_same(model, model%steps(step_before(model%steps, now%step)))
+    if (is_kept) then
+      self%loss%force = last%lost_damping
+      self%excess = self%excess + self%loss%force
+      call self%set_internal(now%motion)
+      return
+    end if
     task%velocity = now%motion%v
     task%x = 0.0_rk*now%motion%v
     call self%loss%add_force(model, system%numbers, task, now%points, self%answers, self%excess)

@@ -143,9 +143,10 @@ contains
     call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
   end subroutine find_equilibrium
 
-  !> Newton's iteration from an equilibrium with parted points, as if none had parted: iterates on
-  !> the way to the equilibrium may have opened points that stay closed. An equilibrium in which
-  !> fewer points have parted counts, else the one before.
+  !> Newton's iteration as if no point had parted, from an equilibrium with parted points and, where
+  !> that does not converge in statics, from sweeps: iterates on the way to the equilibrium may have
+  !> opened points that stay closed. An equilibrium in which fewer points have parted counts, else
+  !> the one before.
   subroutine try_full_laws(process, controls, joints, operator, old, field, new, outcome)
     class(joint_process), intent(inout) :: process
     type(step_controls), intent(in) :: controls
@@ -168,11 +169,21 @@ contains
     field%num_openings = 0
     call linearise_anew(process, joints, operator, old, field, new, outcome)
     call process%run_newton(controls, joints, operator, old, field, new, outcome)
+    if (.not. is_done(process, controls, outcome)) then
+      if (field%is_static .and. allocated(process%opened)) then
+        call process%find_closed(operator)
+        field%scale = process%scale
+        field%num_openings = 0
+        call run_sweeps(process, joints, operator, old, first_sweeps(1), field, new, outcome)
+        call process%run_newton(controls, joints, operator, old, field, new, outcome)
+      end if
+    end if
     if (outcome%has_converged .and. .not. allocated(process%failure)) then
       if (count_parted(joints, operator, old, new) < num_parted) return
     end if
     if (allocated(process%failure)) deallocate (process%failure)
     kept_outcome%iterations = outcome%iterations
+    kept_outcome%sweeps = outcome%sweeps
     field = kept_field
     new = kept_state
     outcome = kept_outcome

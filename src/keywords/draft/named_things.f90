@@ -9,6 +9,7 @@ module named_things
   use nearest_words, only: nearest_word
   use set_lists, only: set_list
   use sorted_lists, only: sorted_unique
+  use write_text, only: as_text
   implicit none
   private
   public :: nodes_at, nodes_in_order_at, elements_at, elements_of_set, nodes_of_set
@@ -88,11 +89,8 @@ contains
       if (found == 0) then
         call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
                            ' does not exist', article//' '//kind//' of the model')
-      else if (this%keyword /= 'NSET' .and. this%keyword /= 'ELSET' .and. &
-               is_another_set(sets, this%word_at(line, field), found)) then
-        call this%warn_at(faults, line, field, "'"//this%text_at(line, field)//"' is "//kind// &
-                          ' '//this%text_at(line, field)//' here, not the '//kind// &
-                          ' set of this name', 'a name with a letter for the set')
+      else if (this%keyword /= 'NSET' .and. this%keyword /= 'ELSET') then
+        call warn_of_set(this, line, field, kind, position, sets, faults)
       end if
     else
       found = sets%find(this%word_at(line, field))
@@ -104,6 +102,41 @@ contains
     end if
     members = pack([found], [found > 0])
   end subroutine members_at
+
+  !> Warns of a number that is the name of a set too: once for the card, with the lines that follow.
+  subroutine warn_of_set(this, line, field, kind, position, sets, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    type(position_table), intent(in) :: position !< by the user's ids
+    type(set_list), intent(in) :: sets
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem
+    integer :: i, others
+    if (.not. is_ambiguous(line)) return
+    do i = 1, line - 1
+      if (is_ambiguous(i)) return
+    end do
+    others = count([(is_ambiguous(i), i=line + 1, this%num_lines)])
+    problem = "'"//this%text_at(line, field)//"' is "//kind//' '//this%text_at(line, field)// &
+              ' here, not the '//kind//' set of this name'
+    if (others == 1) problem = problem//'; also 1 more line of the card'
+    if (others > 1) problem = problem//'; also '//as_text(others)//' more lines of the card'
+    call this%warn_at(faults, line, field, problem, 'a name with a letter for the set')
+  contains
+    !> Whether the number in a line names a set with something else than its one member.
+    logical function is_ambiguous(i)
+      integer, intent(in) :: i !< line
+      integer :: found
+      is_ambiguous = .false.
+      if (field > this%num_fields(i)) return
+      ! *EQUATION: a number of terms is no node.
+      if (this%num_fields(i) == 1 .and. this%num_fields(line) > 1) return
+      if (.not. this%is_integer_at(i, field)) return
+      found = position%find(this%integer_at(i, field))
+      if (found > 0) is_ambiguous = is_another_set(sets, this%word_at(i, field), found)
+    end function is_ambiguous
+  end subroutine warn_of_set
 
   !> Whether a set of this name holds something else than one member.
   pure logical function is_another_set(sets, name, member)

@@ -55,5 +55,6 @@ contains
     allocate (item, source=shaking)
     call put_load(model, item, 'base motion '//as_text(this%integer('DOF')), 'BASE MOTION', &
                   as_text(this%integer('DOF')), '', scale, history)
+    where ([1, 2, 3] == shaking%dof) model%is_shaken = .false. ! *BOUNDARY does not end this motion
   end subroutine read_base_motion
 end module keywords_base_motion

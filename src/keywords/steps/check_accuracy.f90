@@ -41,7 +41,7 @@ contains
       now%finest_increment = finest_ratio*now%first_increment
       if (is_given(model, 3)) now%finest_increment = now%smallest_increment
       if (is_given(model, 4)) return
-      now%largest_increment = max(now%first_increment, &
+      now%largest_increment = max(now%finest_increment, &
                                   min(longest_ratio*now%first_increment, &
                                       (1.0_rk + round_off)*shortest_sample(model)))
     end associate
@@ -81,8 +81,8 @@ contains
     end associate
   end function is_given
 
-  !> The shortest time between two values of an amplitude of the step: longer increments would miss
-  !> values.
+  !> The shortest sampling interval of the amplitudes of the step: longer increments would miss
+  !> values. Half the time from the value before to the value after: a jump is no sampling.
   pure real(rk) function shortest_sample(model) result(shortest)
     type(draft), intent(in) :: model
     type(step_load), allocatable :: loads(:)
@@ -94,7 +94,7 @@ contains
         if (.not. (any(loads%amplitude == i) .or. any(model%supports%history == i) &
                    .or. any(model%point_forces%history == i))) cycle
         n = size(time)
-        if (n > 1) shortest = min(shortest, minval(time(2:) - time(:n - 1)))
+        if (n > 2) shortest = min(shortest, 0.5_rk*minval(time(3:) - time(:n - 2)))
       end associate
     end do
   end function shortest_sample

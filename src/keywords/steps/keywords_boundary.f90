@@ -39,7 +39,8 @@ contains
               field('AMPLITUDE', kind_word, 'history of the values'), &
               field('TYPE', kind_choice, 'what is prescribed; ACCELERATION of all supports of '// &
                     'a direction is the motion of the base, results are relative to it; '// &
-                    'OP=NEW ends it', &
+                    'OP=NEW ends it, and so do displacements of all these supports in a later '// &
+                    'step', &
                     default='DISPLACEMENT', choices=types, is_checked_later=.true.)])
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &

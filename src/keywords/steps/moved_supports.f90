@@ -52,14 +52,47 @@ contains
   !> *BOUNDARY, OP=NEW ends the accelerations of the supports of earlier steps.
   subroutine end_accelerations(model)
     type(draft), intent(inout) :: model
-    integer :: dof, ended
+    integer :: dof
     do dof = 1, size(model%is_shaken)
-      if (.not. model%is_shaken(dof)) cycle
-      call model%active_loads%take_over('BASE MOTION', as_text(dof), 'another motion', 0.0_rk, 0, &
-                                        ended)
-      model%is_shaken(dof) = .false.
+      if (model%is_shaken(dof)) call end_acceleration(model, dof)
     end do
   end subroutine end_accelerations
+
+  subroutine end_acceleration(model, dof)
+    type(draft), intent(inout) :: model
+    integer, intent(in) :: dof !< direction
+    integer :: ended
+    call model%active_loads%take_over('BASE MOTION', as_text(dof), 'another motion', 0.0_rk, 0, &
+                                      ended)
+    model%is_shaken(dof) = .false.
+  end subroutine end_acceleration
+
+  !> Displacements replace an acceleration of an earlier step: at all supports of the direction,
+  !> which cannot move in different ways.
+  subroutine replace_acceleration(model, dof, faults)
+    type(draft), intent(inout) :: model
+    integer, intent(in) :: dof !< direction
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, given, left
+    associate (table => model%supports)
+      given = findloc(table%is_set(dof, :) .and. table%is_new(dof, :), .true., dim=1)
+      left = findloc(table%is_set(dof, :) .and. .not. table%is_new(dof, :), .true., dim=1)
+    end associate
+    if (given == 0) return
+    if (left == 0) then
+      call end_acceleration(model, dof)
+      return
+    end if
+    do i = model%current, model%step_origin%card, -1
+      if (model%cards(i)%keyword /= 'BOUNDARY') cycle
+      call model%cards(i)%fault( &
+        faults, 'node '//as_text(model%problem%mesh%node_id(given))//' has a displacement in '// &
+        'direction '//as_text(dof)//', node '//as_text(model%problem%mesh%node_id(left))// &
+        ' has the acceleration of an earlier step', 'one motion for all supports of a '// &
+        'direction: displacements of all of them end the acceleration, as OP=NEW does')
+      return
+    end do
+  end subroutine replace_acceleration
 
   !> Makes loads of the accelerations at the end of the step, when all its supports are known.
   subroutine close_accelerations(model, faults)
@@ -67,7 +100,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer :: dof
     do dof = 1, size(model%moved)
-      if (.not. allocated(model%moved(dof)%moves)) cycle
+      if (.not. allocated(model%moved(dof)%moves)) then
+        if (model%is_shaken(dof)) call replace_acceleration(model, dof, faults)
+        cycle
+      end if
       call close_direction(model%moved(dof), dof, model, faults)
       model%moved(dof) = moved_direction()
     end do

@@ -72,6 +72,7 @@ contains
     control%growth = dynamic_growth
     control%easy_needed = easy_dynamic_increments
     if (plan%largest_increment >= huge(1.0_rk)) control%largest = control%size
+    if (plan%follows_accuracy()) control%size = control%on_grid(control%largest)
   end subroutine start_control
 
   !> Size of the increment that starts at a time, not past the end of the step. If the remaining

@@ -10,7 +10,7 @@ module joint_readings
   use extremes, only: extremes_by_face, note_values
   implicit none
   private
-  public :: joint_record, open_joint_record, note_joint
+  public :: joint_record, open_joint_record, note_joint, gap_in_mesh
   public :: opening_at_points, opening_at_nodes, reading_names
 
   !> Names of the components of `joint_record%largest_now`.
@@ -108,6 +108,13 @@ contains
     end do
     is_on = part > max(0.5_rk*maxval(part), 0.0_rk)
   end function is_master_on
+
+  !> The largest distance of the faces as meshed, with the gap of the law [m].
+  pure real(rk) function gap_in_mesh(joint) result(gap)
+    type(dam_joint), intent(in) :: joint
+    gap = joint%law%gap
+    if (size(joint%clearance) > 0) gap = gap + maxval(joint%clearance)
+  end function gap_in_mesh
 
   !> Records one increment: opening (0 while closed), length of the slip, closing pressure and
   !> penetration of the faces.

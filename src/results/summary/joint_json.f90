@@ -2,6 +2,7 @@
 module joint_json
   use extremes, only: extremes_by_face, face_names
   use joint_points, only: dam_joint
+  use joint_readings, only: gap_in_mesh
   use json_writer, only: json_text, lower
   use kinds, only: rk
   use problem_definition, only: problem
@@ -46,6 +47,7 @@ contains
     call json%put_text(trim(merge('nodes', 'gauss', joint%is_nodal)), 'integration')
     call json%put_integer(joint%num_points, 'points')
     call json%put_real(sum(joint%area), 'area')
+    if (gap_in_mesh(joint) > 0.0_rk) call json%put_real(gap_in_mesh(joint), 'open_in_mesh')
   end subroutine put_composition
 
   !> Extremes anywhere, upstream and downstream, where they exist.

@@ -8,6 +8,7 @@ module run_closing
                          line_of_mesh, line_of_omissions
   use extremes, only: extreme
   use joint_points, only: dam_joint
+  use joint_readings, only: gap_in_mesh
   use kinds, only: rk
   use problem_definition, only: problem
   use run_ledger, only: ledger, ledger_part
@@ -114,8 +115,7 @@ contains
     type(dam_joint), intent(in) :: joint
     character(:), allocatable :: text
     real(rk) :: gap
-    gap = joint%law%gap
-    if (size(joint%clearance) > 0) gap = gap + maxval(joint%clearance)
+    gap = gap_in_mesh(joint)
     text = 'never open'
     if (gap > 0.0_rk) text = 'open by up to '//as_short_text(gap)//' in the mesh, closed at '// &
                              'the end of all increments'
