@@ -188,6 +188,17 @@ def test_options(arguments, code, stream, text, program_path: Path, tmp_path: Pa
     assert text in getattr(done, stream)
 
 
+@pytest.mark.parametrize("folder", ["job.inp", "job.inp/results"])
+def test_a_file_in_place_of_a_folder(folder, program_path: Path, tmp_path: Path) -> None:
+    """A mistake in the command line: the system has not failed. The deck stays as it is."""
+    deck = BLOCK.replace("BASE OF IT, PINNED\n5, 2\n", "BASE OF IT, PINNED\n")
+    (tmp_path / "job.inp").write_text(deck)
+    done = run(program_path, tmp_path, "-q", "-o", folder, "job.inp")
+    assert done.returncode == 2
+    assert f"cannot write in the folder '{folder}': a file has this name" in done.stderr
+    assert (tmp_path / "job.inp").read_text() == deck
+
+
 def test_a_run_leaves_nothing_of_an_earlier_one(program_path: Path, tmp_path: Path) -> None:
     steps = "*STEP\n*STATIC, DIRECT\n{}, 1.\n*CLOAD\n7, 1, 5.\n{}*NODE FILE\nU\n*END STEP\n"
     deck = tmp_path / "job.inp"

@@ -3,66 +3,20 @@ module card_check
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place, severity_error
   use field_text, only: expected_in, names_of_columns, text_or_nothing
-  use keyword_spec, only: field, find_spec, keyword, kind_choice, kind_flag, kind_integer, &
-                          kind_real, kind_word, later, refused, spec_of_variant, without_effect
+  use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_integer, &
+                          kind_real, kind_word, spec_of_variant
   use kinds, only: rk
   use nearest_words, only: nearest_choice, nearest_word
   use parse_text, only: largest_number, parse_integer, parse_real, single_blanks, upper_case
   use write_text, only: as_text
   implicit none
   private
-  public :: check_card, check_lines, match_card, longest_name
+  public :: check_card, check_given_parameters, check_lines, longest_name
 
   integer, parameter :: longest_name = 80 !< letters of a name, as in Abaqus
   integer, parameter :: shortest_name = 3 !< letters of an abbreviated parameter
 
 contains
-
-  !> Finds the keyword of a card. An unknown or unavailable keyword is an error; a keyword without
-  !> effect is noted.
-  subroutine match_card(the_card, specs, faults, found, where_it_stands)
-    type(card), intent(in) :: the_card
-    type(keyword), intent(in) :: specs(:)
-    type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: found !< position in `specs`; 0: ignore the card
-    character(*), intent(in), optional :: where_it_stands !< see `find_spec`
-    found = find_spec(specs, the_card%keyword, where_it_stands)
-    if (found == 0) then
-      call fault_unknown(the_card, specs, faults)
-    else if (specs(found)%status == later) then
-      call the_card%fault(faults, 'not available yet')
-      found = 0
-    else if (specs(found)%status == refused) then
-      call the_card%fault(faults, 'not available', specs(found)%way_out)
-      found = 0
-    else if (specs(found)%status == without_effect) then
-      call the_card%ignore(faults, 'has no effect here')
-      found = 0
-    end if
-  end subroutine match_card
-
-  !> Reports an unknown keyword, with the known keyword of the nearest spelling.
-  subroutine fault_unknown(the_card, specs, faults)
-    type(card), intent(in) :: the_card
-    type(keyword), intent(in) :: specs(:)
-    type(diagnostic_list), intent(inout) :: faults
-    character(longest_name) :: names(size(specs))
-    character(:), allocatable :: nearest
-    integer :: i
-    if (len(the_card%keyword) == 0) then
-      call the_card%fault(faults, "no keyword after the '*'", "a keyword, or '**' for a comment")
-    else if (index(the_card%keyword, '=') > 0) then
-      call the_card%fault(faults, 'unknown keyword with a "="', &
-                          'a comma between the keyword and its parameters')
-    else
-      do i = 1, size(specs)
-        names(i) = specs(i)%name
-      end do
-      nearest = nearest_word(the_card%keyword, names)
-      if (len(nearest) > 0) nearest = '*'//nearest
-      call the_card%fault(faults, 'unknown keyword', nearest=nearest)
-    end if
-  end subroutine fault_unknown
 
   !> Checks a card against its specification, and stores the specification in the card.
   subroutine check_card(the_card, spec, faults, is_right)

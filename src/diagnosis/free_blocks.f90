@@ -75,8 +75,13 @@ contains
       text = idle_motion(model, task)
     end if
     if (text == '') then
+      text = lifted_block(model, task, last)
+      if (text /= '') then
+        error%message = text//'; this was the increment to time '//as_text(when%start + when%now)
+        return
+      end if
       text = '; the same model of rigid blocks has an equilibrium, which may need prestress'// &
-             separated_block(model, task%blocks, last)
+             separated_block(model, task, last)
     end if
     error%message = error%message//text
   end subroutine name_free_block
@@ -231,12 +236,59 @@ contains
     end do
   end subroutine move_block
 
-  !> The first block whose joints were all open at the end of the iteration; '' for none.
-  function separated_block(model, blocks, last) result(text)
+  !> A block that its supports hold in part and whose joints were all open at the end of the
+  !> iteration: nothing else can hold it, so the message leaves the iteration out. '' for none.
+  function lifted_block(model, task, last) result(text)
+    type(problem), intent(in) :: model
+    type(block_task), intent(in) :: task
+    type(joint_state), intent(in) :: last(:)
+    character(:), allocatable :: text
+    real(rk), allocatable :: shares(:), motion(:, :)
+    type(error_type), allocatable :: error
+    logical :: is_apart(task%blocks%num_blocks)
+    integer :: b, num_held
+    text = ''
+    is_apart = blocks_apart(model, task%blocks, last)
+    do b = 1, task%blocks%num_blocks
+      if (.not. is_apart(b)) cycle
+      associate (own => task%free(6*b - 5:6*b, :))
+        call find_modes(matmul(own, transpose(own)), shares, motion, error)
+      end associate
+      if (allocated(error)) return
+      num_held = count(shares <= no_force)
+      if (num_held == 0 .or. num_held == 6) cycle
+      text = block_name(model, task%blocks, b)//' has come free: all its joints have opened, '// &
+             'and its supports let it '//freedom_text(task%blocks, b, motion(:, num_held + 1:))// &
+             '; add a support, or a load that keeps a joint closed'
+      return
+    end do
+  end function lifted_block
+
+  !> The first block that can move and whose joints were all open at the end of the iteration; ''
+  !> for none.
+  function separated_block(model, task, last) result(text)
+    type(problem), intent(in) :: model
+    type(block_task), intent(in) :: task
+    type(joint_state), intent(in) :: last(:)
+    character(:), allocatable :: text
+    logical :: is_apart(task%blocks%num_blocks)
+    integer :: b
+    text = ''
+    is_apart = blocks_apart(model, task%blocks, last)
+    do b = 1, task%blocks%num_blocks
+      if (.not. is_apart(b) .or. sum(task%free(6*b - 5:6*b, :)**2) <= no_force) cycle
+      text = '; at the end of the iteration all joints of '//block_name(model, task%blocks, b)// &
+             ' were open'
+      return
+    end do
+  end function separated_block
+
+  !> Whether each block has joints and all of them were open.
+  pure function blocks_apart(model, blocks, last) result(is_apart)
     type(problem), intent(in) :: model
     type(block_set), intent(in) :: blocks
     type(joint_state), intent(in) :: last(:)
-    character(:), allocatable :: text
+    logical :: is_apart(blocks%num_blocks)
     logical :: has_joint(0:blocks%num_blocks), is_touched(0:blocks%num_blocks)
     integer :: j, p, k, b
     has_joint = .false.
@@ -250,12 +302,8 @@ contains
         end do
       end do
     end do
-    text = ''
-    b = findloc(has_joint(1:) .and. .not. is_touched(1:), .true., 1)
-    if (b == 0) return
-    text = '; at the end of the iteration all joints of '//block_name(model, blocks, b)// &
-           ' were open'
-  end function separated_block
+    is_apart = has_joint(1:) .and. .not. is_touched(1:)
+  end function blocks_apart
 
   !> A motion that no joint resists and no load drives; '' for none.
   function idle_motion(model, task) result(text)

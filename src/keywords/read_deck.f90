@@ -1,7 +1,8 @@
 !> Reads a deck into the problem, in passes over its cards; all faults are collected.
 module read_deck
   use problem_definition, only: problem ! first: gfortran 12 fails to write the module otherwise
-  use card_check, only: check_card, match_card
+  use card_check, only: check_card
+  use card_match, only: match_card
   use check_bases, only: warn_of_bases
   use check_histories, only: warn_of_histories
   use check_idle_steps, only: warn_of_idle_steps

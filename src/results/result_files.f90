@@ -310,7 +310,7 @@ contains
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
     real(rk), intent(in) :: shape(:, :, :) !< (3, nodes, modes)
-    real(rk), allocatable, intent(out) :: stiffening(:) !< (modes) [1/s2]
+    real(rk), allocatable, intent(out) :: stiffening(:) !< (modes) [1/s2], see `find_stiffening`
     call find_stiffening(model, self%record%stresses, shape, stiffening)
   end subroutine weigh_modes
 

@@ -84,6 +84,20 @@ def test_a_block_is_lifted(keyway) -> None:
     assert re.search("element 1 of set BLOCK under .*: the block can move along z", message(run))
 
 
+@meshes
+def test_a_block_is_lifted_by_its_top(keyway, mesh) -> None:
+    """Moved up by its supports until all joints are open: nothing holds the block sideways. Hints
+    for the iteration would be wrong."""
+    pair = Pair(young=2e10, law="KN=1e10, KT=5e9, FRICTION=0.5", **mesh)
+    lift = static("*BOUNDARY\nTOP, 3, 3, 1e-3\n", "0.1, 1.")
+    run = keyway(pair.deck(static(WEIGHT) + lift), code=1)
+    assert message(run).startswith("the block with element 1 of set BLOCK has come free: all its")
+    assert "supports let it move along x, y and rotate about the axis z" in message(run)
+    assert "CONTROLS" not in message(run)
+    assert "prestress" not in message(run)
+    assert run.stderr.rstrip().endswith("[free-block]")
+
+
 def test_without_friction_there_is_a_warning(keyway) -> None:
     """Without a push the block is in equilibrium, with a push it is not."""
     pair = Pair()

@@ -8,7 +8,9 @@ truth, is 1 for a perfect estimate.
 import h5py
 import numpy as np
 import pytest
+from block_decks import Pair
 from brick_decks import brick_deck, elastic, nodal_forces
+from joint_decks import static
 from keyway_tools.box_mesh import box_mesh
 
 BORE, OUTSIDE, MODULUS, POISSON = 3.0, 9.0, 1000.0, 0.3
@@ -150,6 +152,59 @@ def test_cook_membrane(keyway, documented):
 def test_cantilever(keyway, documented):
     """The edges of the root are singular."""
     compare_energies(keyway, documented, cantilever, "mesh error of a cantilever", (1, 2, 4), 8)
+
+
+@pytest.mark.parametrize("element", ["C3D8", "C3D8I"])
+def test_sections_have_no_part_in_the_error(keyway, element):
+    """A section for each slice, of two materials with the same constants: stresses jump no more
+    than in one section. The sums are the same, in another order of the patches."""
+    whole = cantilever(2, element)
+    section = "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+    assert section in whole
+    slices = "".join(
+        f"*ELSET, ELSET=S{i}, GENERATE\n{4 * i + 1}, {4 * i + 4}\n"
+        f"*SOLID SECTION, ELSET=S{i}, MATERIAL={'MN'[i % 2]}\n"
+        for i in range(8)
+    )
+    twin = f"*MATERIAL, NAME=N\n*ELASTIC\n{MODULUS!r}, {POISSON!r}\n"
+    one, many = keyway(whole), keyway(whole.replace(section, twin + slices))
+    assert estimate(one)["relative"] > 0.05  # not zero
+    for quantity in ("stress", "displacement"):
+        expected = one.json["accuracy"]["estimates"][quantity]["mesh"]
+        found = many.json["accuracy"]["estimates"][quantity]["mesh"]
+        assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_materials_of_other_stiffness_keep_their_jump(keyway):
+    """Two bars side by side, stretched alike: the stress along them jumps and is exact; only the
+    round-off is left."""
+    mesh, number = box_mesh((4, 2, 1), lambda a, b, c: np.stack([4.0 * a, b, c], axis=-1))
+    mesh.node_sets["LOW"], mesh.node_sets["HIGH"] = number[0].ravel(), number[-1].ravel()
+    mesh.node_sets["EDGE"] = number[:, 0, 0].ravel()
+    cards = (
+        "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*MATERIAL, NAME=N\n*ELASTIC\n3000., 0.\n"
+        "*ELSET, ELSET=ONE, GENERATE\n1, 7, 2\n*ELSET, ELSET=TWO, GENERATE\n2, 8, 2\n"
+        "*SOLID SECTION, ELSET=ONE, MATERIAL=M\n*SOLID SECTION, ELSET=TWO, MATERIAL=N\n"
+        "*BOUNDARY\nLOW, 1, 1\nEDGE, 2, 3\n*STEP\n*STATIC\n*BOUNDARY\nHIGH, 1, 1, 0.001\n"
+        "HIGH, 3, 3\n*END STEP\n"
+    )
+    assert estimate(keyway(brick_deck(mesh, "C3D8", cards)))["relative"] < 1e-12
+
+
+@pytest.mark.parametrize("counts", [(1, 1, 1), (2, 2, 2)])
+def test_elements_without_neighbours(keyway, counts):
+    """A block of one element on a joint: its stress jumps to no other one, and nothing is known."""
+    law = "KN=1e10, KT=1e10, FRICTION=0.6"
+    pair = Pair(young=1e9, counts=counts, base_counts=(1, 1, 1), law=law)
+    run = keyway(pair.deck(static("*DLOAD\nBLOCK, GRAV, 9.81, 0.2, 0., -1.\n")))
+    found = run.json["accuracy"]["estimates"]
+    log = (run.folder / f"{run.job}.log").read_text(encoding="utf-8")
+    is_alone = counts == (1, 1, 1)
+    assert ("stress" not in found) == is_alone
+    assert ("mesh" not in found["displacement"]) == is_alone
+    assert ("errors not estimated: stresses (" in log) == is_alone
+    (line,) = (x for x in log.splitlines() if x.startswith("largest displacement"))
+    assert ("mesh not estimated" in line) == is_alone
 
 
 def test_hourglasses_are_an_error(keyway):

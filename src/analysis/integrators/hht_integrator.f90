@@ -129,6 +129,7 @@ contains
       results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
       ! Histories of bodies that rock or slide do not follow the modes.
       if (rocks(own) .or. now%energy%shows_sliding()) results%time_error(3) = -1.0_rk
+      results%mesh_error = -1.0_rk
       if (size(now%joints) == 0 .and. allocated(own%softer)) then
         results%mesh_error(of_displacement) = abs(own%mesh_at_largest)
       else if (size(now%joints) > 0) then

@@ -1,7 +1,7 @@
 !> Folders and names of files.
 module file_system
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
-  use errors, only: error_type, raise, system_failed
+  use errors, only: deck_is_wrong, error_type, raise, system_failed
   implicit none
   private
   public :: make_folder, safe_name, link_name, file_name, base_name
@@ -22,7 +22,8 @@ module file_system
 
 contains
 
-  !> Makes a folder and its parents; a folder that exists is no error.
+  !> Makes a folder and its parents; a folder that exists is no error. A file in its place is an
+  !> error of the command line, not of the system.
   subroutine make_folder(path, error)
     character(*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
@@ -38,6 +39,11 @@ contains
       ! Another run that starts in the folder may have removed the file already.
       close (unit, status='delete', iostat=status_of_removal)
       if (status_of_removal /= 0) close (unit)
+      return
+    end if
+    if (index(reason, 'Not a directory') > 0) then
+      call raise(error, "cannot write in the folder '"//path//"': a file has this name, or "// &
+                 'that of a folder above; expected another name (-o)', deck_is_wrong)
       return
     end if
     call raise(error, "cannot write in the folder '"//path//"'"// &

@@ -68,8 +68,9 @@ contains
     text = text//': '//printable(kind%name)
   end function further_errors
 
-  !> Positions of the errors by file and line: first the errors that stand alone, then names that do
-  !> not exist, then what other cards lack; errors of one line stay in the order found.
+  !> Positions of the errors by file and line: first files that cannot be read, then the errors that
+  !> stand alone, then names that do not exist, then what other cards lack; errors of one line stay
+  !> in the order found.
   pure function order_by_place(list) result(order)
     type(diagnostic_list), intent(in) :: list
     integer :: order(list%num_kept)
@@ -80,6 +81,7 @@ contains
       end do
       file(i) = j
       associate (kind => list%kinds%kinds(list%errors(i)%kind))
+        if (kind%is_lost_file) file(i) = j - list%num_kept
         if (kind%is_reference) file(i) = j + list%num_kept
         if (kind%is_absence) file(i) = j + 2*list%num_kept
       end associate

@@ -3,7 +3,8 @@
 !>
 !> A missing node, element, set or other name is often the consequence of another error, such as a
 !> misspelt keyword: such errors are listed after the others, and many of them as one. So is what a
-!> card lacks, such as the stiffness of a material: these errors come last.
+!> card lacks, such as the stiffness of a material: these errors come last. A file that cannot be
+!> read comes first: what it should hold is missing elsewhere.
 module fault_kinds
   use message_catalogue, only: label_of_fault
   implicit none
@@ -17,6 +18,7 @@ module fault_kinds
     integer :: num = 0 !< all
     integer :: first_line = 0, last_line = 0 !< of those that are not shown one by one
     logical :: is_reference = .false. !< something named does not exist
+    logical :: is_lost_file = .false. !< a file cannot be read
     logical :: is_absence = .false. !< something has not what another card should give it
     integer :: most_shown = huge(1) !< if there are more, only one is shown
   end type fault_kind
@@ -61,6 +63,7 @@ contains
         kind%name = name
         kind%file = file
         kind%is_reference = is_reference
+        kind%is_lost_file = index(problem, 'cannot read ') == 1
         kind%is_absence = label_of_fault(problem, '') == ' [incomplete-model]'
         if (is_reference) kind%most_shown = merge(1, most_references, index(name, '''') > 0)
       end if

@@ -117,16 +117,20 @@ contains
   end subroutine warn_of_envelopes
 
   !> A static step finds its displacements from its loads; only histories of joints and inelastic
-  !> solids and prescribed displacements start from the initial ones.
+  !> solids and prescribed displacements start from the initial ones. What solids have stored by
+  !> them is released in the first increment.
   subroutine warn_of_initial_displacements(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: why
+    character(:), allocatable :: why, effect
     integer :: i
     if (all(model%problem%initial_values%is_velocity)) return
-    if (size(model%problem%joints) > 0) return
-    if (has_inelastic_law(model)) return
-    if (any_starts_a_support(model)) return
+    effect = 'initial displacements have no effect: '
+    if (size(model%problem%joints) > 0 .or. has_inelastic_law(model)) then
+      effect = 'initial displacements have no effect but on joints and inelastic solids: '
+    else if (any_starts_a_support(model)) then
+      return
+    end if
     why = 'no step moves the model'
     do i = 1, size(model%problem%steps)
       if (model%problem%steps(i)%procedure%has_inertia) return
@@ -137,7 +141,7 @@ contains
     do i = 1, size(model%cards)
       if (.not. is_keyword(model%cards(i), 'INITIAL CONDITIONS')) cycle
       if (model%cards(i)%word('TYPE') /= 'DISPLACEMENT') cycle
-      call model%cards(i)%warn(faults, 'initial displacements have no effect: '//why)
+      call model%cards(i)%warn(faults, effect//why)
       return
     end do
   end subroutine warn_of_initial_displacements

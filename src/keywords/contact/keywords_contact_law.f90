@@ -48,6 +48,9 @@ contains
                                 first=model%cards(model%interactions(i)%spot%card)%place())
     end do
     model%interactions = [model%interactions, new]
+    if (.not. this%is_empty_at(1, 1)) then
+      call this%ignore(faults, 'the thickness has no effect: solids have three dimensions')
+    end if
   end subroutine read_interaction
 
   subroutine describe_behavior(spec)

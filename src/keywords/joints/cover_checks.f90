@@ -56,16 +56,18 @@ contains
 
   !> Stores how well two faces cover each other, and reports faults at the card of the interface: an
   !> error without any cover, warnings for parts without partner, gaps and overlaps.
-  subroutine keep_cover(place, name, kind, cover, gaps_count, model, faults)
+  subroutine keep_cover(place, name, kind, cover, gaps_count, is_moved, model, faults)
     type(card), intent(in) :: place
     character(*), intent(in) :: name !< upper case
     character(*), intent(in) :: kind !< 'JOINT', 'TIE' or 'INTERFACE'
     type(surface_cover), intent(in) :: cover
     logical, intent(in) :: gaps_count !< gaps in the mesh are intended
+    logical, intent(in) :: is_moved !< the faces are moved together
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(named_cover) :: new
     real(rk) :: side, bare, least
+    character(:), allocatable :: afterwards
     new%name = name
     new%kind = kind
     new%cover = cover
@@ -90,13 +92,15 @@ contains
                       ' m2 of the slave face are covered twice')
     end if
     side = sqrt(cover%slave_area/max(1, size(cover%bare)))
+    afterwards = ''
+    if (is_moved) afterwards = '; ADJUST=YES moves them together'
     if (cover%largest_gap > gap_part*side .and. .not. gaps_count) then
       call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
-                      ' m apart, at '//place_text(cover%gap_place))
+                      ' m apart, at '//place_text(cover%gap_place)//afterwards)
     end if
     if (cover%largest_overlap > gap_part*side) then
       call place%warn(faults, 'the faces overlap by up to '//as_text(cover%largest_overlap)// &
-                      ' m, at '//place_text(cover%overlap_place))
+                      ' m, at '//place_text(cover%overlap_place)//afterwards)
     end if
   end subroutine keep_cover
 

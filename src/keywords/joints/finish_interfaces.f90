@@ -133,7 +133,7 @@ contains
                           'INTERFACE', &
                           new, cover)
       cover%element = request%elements
-      call keep_cover(place, request%name, 'INTERFACE', cover, .false., model, faults)
+      call keep_cover(place, request%name, 'INTERFACE', cover, .false., .false., model, faults)
     end associate
     call append_coupling(model, new)
   end subroutine build_interface

@@ -182,7 +182,8 @@ contains
                             'opposite faces at a distance of less than '// &
                             trim(merge('4 facets    ', 'half a facet', request%is_measured)))
       else
-        call keep_cover(place, request%name, 'JOINT', cover, request%is_measured, model, faults)
+        call keep_cover(place, request%name, 'JOINT', cover, request%is_measured, .false., model, &
+                        faults)
       end if
     end associate
     call check_claims(number, slave, cover, model, taken, faults)

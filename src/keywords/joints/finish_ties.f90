@@ -121,7 +121,7 @@ contains
                             'two surfaces that face each other')
         return
       end if
-      call keep_cover(place, request%name, 'TIE', cover, .false., model, faults)
+      call keep_cover(place, request%name, 'TIE', cover, .false., request%adjusts, model, faults)
       if (cover%largest_gap > request%tolerance) then
         call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
                         ' m apart and are tied there too', 'at most the POSITION TOLERANCE')

@@ -242,6 +242,7 @@ contains
     num_before = faults%num_errors
     do k = 1, num_nodes
       call nodes_in_order_at(this, line, k + 1, model, faults, terms(k)%nodes)
+      if (faults%num_errors > num_before) cycle
       if (size(terms(k)%nodes) == size(terms(1)%nodes) .or. size(terms(k)%nodes) == 1) cycle
       call this%fault_at(faults, line, k + 1, 'found '//as_text(size(terms(k)%nodes))//' nodes', &
                          'as many nodes as the first set, or one')

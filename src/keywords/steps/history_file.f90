@@ -7,7 +7,7 @@ module history_file
   use kinds, only: rk
   use parse_text, only: largest_number, parse_integer, parse_real, upper_case
   use process_limits, only: why_no_file
-  use record_units, only: unit_in_header
+  use record_units, only: record_header
   implicit none
   private
   public :: number_file, read_numbers, read_at2_header
@@ -150,25 +150,25 @@ contains
     spot%source = line
   end function spot_in_file
 
-  !> Number of points and time step from the fourth line of a PEER file, unit from its header:
+  !> Number of points and time step from the fourth line of a PEER file, unit from all of them:
   !> 'NPTS= 1559, DT= .02000 SEC' or the older '1559 .0200 NPTS, DT'.
-  subroutine read_at2_header(path, spot, faults, num_points, dt, unit_name)
+  subroutine read_at2_header(path, spot, faults, num_points, dt, header)
     character(*), intent(in) :: path
     type(place), intent(in) :: spot !< place of the file name in the deck
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: num_points
     real(rk), intent(out) :: dt !< [s]
-    character(:), allocatable, intent(out) :: unit_name !< of record_units, '' where none is named
+    type(record_header), intent(out) :: header
     character(:), allocatable :: line
     integer :: unit, status, i
     num_points = 0
     dt = 0.0_rk
-    unit_name = ''
+    header = record_header('', '', '')
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
     if (status /= 0) return ! reported before
     do i = 1, num_at2_headers
       call read_line(unit, line, status)
-      if (unit_name == '') unit_name = unit_in_header(line)
+      call header%note_line(line)
     end do
     close (unit)
     call take_numbers(upper_case(line), num_points, dt)

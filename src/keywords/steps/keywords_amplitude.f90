@@ -9,7 +9,7 @@ module keywords_amplitude
   use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft
-  use record_units, only: choices_of_units, factor_beside_scale, settle_unit
+  use record_units, only: choices_of_units, factor_beside_scale, record_header, settle_unit
   use write_text, only: as_text
   implicit none
   private
@@ -126,7 +126,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(amplitude), intent(inout) :: new
     real(rk), intent(inout) :: own_factor !< of the unit that only the file names
-    character(:), allocatable :: unit, format
+    type(record_header) :: header
+    character(:), allocatable :: format
     real(rk) :: dt
     integer :: i, num_points
     if (size(numbers%values) == 0 .and. this%has('INPUT')) then
@@ -151,8 +152,8 @@ contains
         call this%fault_parameter(faults, 'FORMAT', 'AT2 without a file', 'INPUT=<file>')
         return
       end if
-      call read_at2_header(numbers%path, this%place_of('INPUT'), faults, num_points, dt, unit)
-      if (num_points > 0) call settle_unit(this, unit, faults, own_factor)
+      call read_at2_header(numbers%path, this%place_of('INPUT'), faults, num_points, dt, header)
+      if (num_points > 0) call settle_unit(this, header, faults, own_factor)
       if (num_points > 0 .and. num_points /= size(numbers%values)) then
         call this%fault_parameter(faults, 'INPUT', 'the file holds '// &
                                   as_text(size(numbers%values))//' values', &

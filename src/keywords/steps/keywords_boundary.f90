@@ -200,10 +200,21 @@ contains
       return
     end select
     if (this%num_fields(line) > 2) then
-      call this%fault_at(faults, line, 3, 'a field after the name of a support', &
-                         'node, '//this%word_at(line, 2))
+      call this%fault_at(faults, line, first_given(this, line, 3), 'found '// &
+                         as_text(this%num_fields(line))//' fields with the name of a support', &
+                         '2 fields: node, '//this%word_at(line, 2))
     end if
   end subroutine read_support_name
+
+  !> The first field of a line with a word, from a field on; that field where there is none.
+  pure integer function first_given(this, line, first) result(i)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, first
+    do i = first, this%num_fields(line)
+      if (.not. this%is_empty_at(line, i)) return
+    end do
+    i = first
+  end function first_given
 
   !> The displacement, which must be zero before the first step.
   subroutine read_value(this, line, is_in_step, faults, value)
@@ -213,7 +224,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     real(rk), intent(out) :: value !< [m]
     value = 0.0_rk
-    if (this%is_empty_at(line, 4)) return
+    if (this%is_empty_at(line, 4) .or. .not. this%is_integer_at(line, 2)) return
     if (.not. this%is_real_at(line, 4)) then
       call this%fault_at(faults, line, 4, "found '"//this%text_at(line, 4)//"'", &
                          'a displacement, a number [m]')

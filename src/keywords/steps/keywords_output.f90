@@ -345,12 +345,12 @@ contains
     spec%example = '*PREPRINT, ECHO=NO'
     spec%status = without_effect
     allocate (spec%parameters, source=[ &
-              field('ECHO', kind_choice, 'has no effect', choices='YES | NO'), &
-              field('HISTORY', kind_choice, 'has no effect', choices='YES | NO'), &
-              field('MODEL', kind_choice, 'has no effect', choices='YES | NO'), &
-              field('CONTACT', kind_choice, 'has no effect', choices='YES | NO'), &
-              field('PARSUBSTITUTION', kind_choice, 'has no effect', choices='YES | NO'), &
-              field('PARVALUES', kind_choice, 'has no effect', choices='YES | NO'), &
-              field('MASSPROP', kind_choice, 'has no effect', choices='YES | NO')])
+              field('ECHO', kind_choice, 'what Abaqus prints', choices='YES | NO'), &
+              field('HISTORY', kind_choice, 'what Abaqus prints', choices='YES | NO'), &
+              field('MODEL', kind_choice, 'what Abaqus prints', choices='YES | NO'), &
+              field('CONTACT', kind_choice, 'what Abaqus prints', choices='YES | NO'), &
+              field('PARSUBSTITUTION', kind_choice, 'what Abaqus prints', choices='YES | NO'), &
+              field('PARVALUES', kind_choice, 'what Abaqus prints', choices='YES | NO'), &
+              field('MASSPROP', kind_choice, 'what Abaqus prints', choices='YES | NO')])
   end subroutine describe_preprint
 end module keywords_output

@@ -11,18 +11,31 @@ module record_units
   use write_text, only: as_text
   implicit none
   private
-  public :: factor_of_unit, unit_in_header, settle_unit, find_further_scale, choices_of_units
+  public :: record_header, factor_of_unit, settle_unit, find_further_scale, choices_of_units
   public :: factor_beside_scale, repeats_unit
 
   character(*), parameter :: choices_of_units = 'G | M/S2 | CM/S2'
   character(*), parameter :: expected_unit = 'UNIT=G, M/S2 or CM/S2, and in SCALE only what '// &
                              'scales the record in m/s2'
-  character(*), parameter :: separators = ' ():=,;'//achar(9)
+  character(*), parameter :: separators = ' ():=,;'//achar(9)//achar(13)
   character(*), parameter :: words_of_g = ' G G''S '
-  character(*), parameter :: words_of_m = ' M/S2 M/S/S M/S^2 M/S**2 M/SEC2 M/SEC/SEC '
+  character(*), parameter :: words_of_m = ' M/S2 M/S/S M/S^2 M/S**2 M/SEC2 M/SEC/SEC '// &
+                             'M/SEC^2 M/SEC**2 '
   character(*), parameter :: words_of_cm = ' CM/S2 CM/S/S CM/S^2 CM/S**2 CM/SEC2 CM/SEC/SEC '// &
-                             'CM/SEC**2 GAL GALS '
+                             'CM/SEC^2 CM/SEC**2 GAL GALS '
+  !> Words between UNIT or UNITS and the unit; words of the line that says what a record is.
+  character(*), parameter :: fillers = ' OF IN IS ARE THE '
+  character(*), parameter :: words_of_headings = ' TIME SERIES HISTORY IN '
   real(rk), parameter :: same_factor = 0.01_rk !< relative: 9.8, 9.80665 and 9.81 are g
+
+  !> What the header of an AT2 file says of its values, in upper case.
+  type :: record_header
+    character(:), allocatable :: unit !< 'G', 'M/S2', 'CM/S2', '' where none of them is named
+    character(:), allocatable :: unknown !< word in the place of a unit, '' for none
+    character(:), allocatable :: quantity !< 'ACCELERATION', 'VELOCITY', ..; '' where not named
+  contains
+    procedure :: note_line, is_no_acceleration
+  end type record_header
 
 contains
 
@@ -46,44 +59,106 @@ contains
                    'record to m/s2, which UNIT='//unit//' asks for as well')
   end function factor_beside_scale
 
-  !> The unit that a line of a header names, '' without one: '.. IN UNITS OF G', 'units: cm/sec2'.
-  pure function unit_in_header(line) result(unit)
+  !> Takes what a line says: '.. TIME SERIES IN UNITS OF G', 'units: cm/sec2'. The first unit
+  !> counts, and acceleration before velocity, which may belong to a station.
+  pure subroutine note_line(self, line)
+    class(record_header), intent(inout) :: self
     character(*), intent(in) :: line
-    character(:), allocatable :: unit
-    character(:), allocatable :: word
-    integer :: first, last
-    logical :: is_named
-    unit = ''
+    character(:), allocatable :: word, quantity, unknown
+    logical :: is_named, is_heading
+    integer :: last
+    quantity = ''
+    unknown = ''
     is_named = .false.
+    is_heading = .false.
     last = 0
     do
-      first = verify(line(last + 1:), separators) + last
-      if (first == last) return
-      last = scan(line(first:), separators) + first - 2
-      if (last < first) last = len(line)
-      word = upper_case(line(first:last))
+      call take_word(line, last, word)
+      if (word == '') exit
+      if (index(quantity, 'ACCEL') == 0 .and. names_quantity(word)) quantity = word
+      is_heading = is_heading .or. index(words_of_headings, ' '//word//' ') > 0
+      if (self%unit == '') self%unit = unit_of_word(word, is_named)
+      if (is_named .and. unknown == '' .and. index(fillers, ' '//word//' ') == 0) unknown = word
       is_named = is_named .or. index(word, 'UNIT') == 1
-      if (index(words_of_m, ' '//word//' ') > 0) unit = 'M/S2'
-      if (index(words_of_cm, ' '//word//' ') > 0) unit = 'CM/S2'
-      if (is_named .and. index(words_of_g, ' '//word//' ') > 0) unit = 'G'
-      if (unit /= '') return
     end do
-  end function unit_in_header
+    if (self%unit == '' .and. self%unknown == '') self%unknown = unknown
+    if (self%quantity == '' .and. (is_heading .or. is_named)) self%quantity = quantity
+    if (index(quantity, 'ACCEL') == 1) self%quantity = quantity
+  end subroutine note_line
+
+  !> Whether a word is that of a motion.
+  pure logical function names_quantity(word)
+    character(*), intent(in) :: word
+    names_quantity = any(index(word, ['ACCEL', 'VELOC', 'DISPL']) == 1)
+  end function names_quantity
+
+  !> The next word of a line in upper case, without a full stop; '' at the end.
+  pure subroutine take_word(line, last, word)
+    character(*), intent(in) :: line
+    integer, intent(inout) :: last !< letter of the word before, then of this one
+    character(:), allocatable, intent(out) :: word
+    integer :: first
+    word = ''
+    first = verify(line(last + 1:), separators) + last
+    if (first == last) return
+    last = scan(line(first:), separators) + first - 2
+    if (last < first) last = len(line)
+    word = upper_case(line(first:last))
+    if (len(word) > 1 .and. word(len(word):) == '.') word = word(:len(word) - 1)
+  end subroutine take_word
+
+  !> The unit that a word stands for, '' for none. A G counts where the line names a unit.
+  pure function unit_of_word(word, is_named) result(unit)
+    character(*), intent(in) :: word
+    logical, intent(in) :: is_named
+    character(:), allocatable :: unit
+    unit = ''
+    if (index(words_of_m, ' '//word//' ') > 0) unit = 'M/S2'
+    if (index(words_of_cm, ' '//word//' ') > 0) unit = 'CM/S2'
+    if (is_named .and. index(words_of_g, ' '//word//' ') > 0) unit = 'G'
+  end function unit_of_word
+
+  !> Whether the header says that the record is of velocity or displacement.
+  pure logical function is_no_acceleration(self)
+    class(record_header), intent(in) :: self
+    is_no_acceleration = self%quantity /= '' .and. index(self%quantity, 'ACCEL') /= 1
+  end function is_no_acceleration
 
   !> The unit of an AT2 file: that of UNIT, which its header must not contradict, or that of the
   !> header.
-  subroutine settle_unit(this, unit, faults, own_factor)
+  subroutine settle_unit(this, header, faults, own_factor)
     type(card), intent(in) :: this
-    character(*), intent(in) :: unit !< of the file, '' where the file does not name it
+    type(record_header), intent(in) :: header
     type(diagnostic_list), intent(inout) :: faults
     real(rk), intent(inout) :: own_factor !< besides SCALE and UNIT
-    if (.not. this%has('UNIT')) then
-      call find_own_factor(this, unit, faults, own_factor)
-    else if (unit /= '' .and. this%word('UNIT') /= unit) then
-      call this%fault_parameter(faults, 'UNIT', 'the header of the file names the unit '//unit, &
-                                'no UNIT, or UNIT='//unit)
+    if (header%is_no_acceleration()) then
+      call this%fault_parameter(faults, 'INPUT', 'the header of the file says '// &
+                                header%quantity, 'a record of acceleration')
+    else if (header%unit == '' .and. header%unknown /= '') then
+      call take_unknown_unit(this, header%unknown, faults)
+    else if (.not. this%has('UNIT')) then
+      call find_own_factor(this, header%unit, faults, own_factor)
+    else if (header%unit /= '' .and. this%word('UNIT') /= header%unit) then
+      call this%fault_parameter(faults, 'UNIT', 'the header of the file names the unit '// &
+                                header%unit, 'no UNIT, or UNIT='//header%unit)
     end if
   end subroutine settle_unit
+
+  !> A unit that is none of those known: SCALE alone can convert it.
+  subroutine take_unknown_unit(this, unknown, faults)
+    type(card), intent(in) :: this
+    character(*), intent(in) :: unknown !< word of the header
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem
+    problem = "the header of the file names the unit '"//unknown//"', which is not known"
+    if (this%has('SCALE') .and. .not. this%has('UNIT')) then
+      call this%warn(faults, problem//': SCALE='//this%text('SCALE')//' is taken as its '// &
+                     'conversion to m/s2')
+      return
+    end if
+    call this%fault_parameter(faults, trim(merge('UNIT ', 'INPUT', this%has('UNIT'))), problem, &
+                              'no UNIT, and in SCALE the factor from this unit to m/s2')
+  end subroutine take_unknown_unit
 
   !> Factor of the values of an *AMPLITUDE without UNIT whose file names a unit.
   subroutine find_own_factor(this, unit, faults, factor)

@@ -3,7 +3,7 @@ module thermal_expansion
   use kinds, only: rk
   implicit none
   private
-  public :: expansion_table
+  public :: expansion_table, expands_alike
 
   !> The mean coefficient between a zero temperature and the present one, as in Abaqus and
   !> CalculiX: linear between the temperatures of a table, constant outside.
@@ -49,4 +49,17 @@ contains
     end associate
     strain = alpha*(temperature - self%zero)
   end function from_zero
+
+  !> Whether two materials have the same thermal expansion, or none.
+  pure logical function expands_alike(first, second)
+    type(expansion_table), intent(in), allocatable :: first, second
+    expands_alike = allocated(first) .eqv. allocated(second)
+    if (.not. (expands_alike .and. allocated(first))) return
+    expands_alike = size(first%alpha) == size(second%alpha)
+    if (.not. expands_alike) return
+    expands_alike = all(abs(first%alpha - second%alpha) <= 0.0_rk)
+    if (size(first%alpha) == 1) return
+    expands_alike = expands_alike .and. abs(first%zero - second%zero) <= 0.0_rk .and. &
+                    all(abs(first%temperature - second%temperature) <= 0.0_rk)
+  end function expands_alike
 end module thermal_expansion

@@ -8,7 +8,7 @@ module dual_weighting
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
   use fitted_stress, only: fitted_defect, make_patch_fit, patch_fit
-  use stress_error, only: smoothing_plan, stress_defect
+  use stress_error, only: energy_of_stresses, hides_error, smoothing_plan, stress_defect
   use stress_recovery, only: recovery_plan, max_points, few_nodes
   use tensor6, only: sum_tensors
   implicit none
@@ -29,7 +29,7 @@ contains
 
   !> The change of each result by the mesh: the true result less the computed one, as far as smooth
   !> stresses show it.
-  subroutine weigh_defects(model, plan, smoothing, u, wants_fit, change)
+  subroutine weigh_defects(model, plan, smoothing, u, wants_fit, change, is_known)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
@@ -37,6 +37,7 @@ contains
     real(rk), intent(in) :: u(:, :, :)
     logical, intent(in) :: wants_fit(:) !< (results) fitted stresses in elements that need them
     real(rk), intent(out) :: change(:) !< (results) [m]
+    logical, intent(out) :: is_known(:) !< (results) not where solids without neighbours count
     type(point_fields) :: own(size(u, 3))
     logical :: is_fitted(plan%num_solids)
     integer :: k
@@ -47,17 +48,19 @@ contains
       change(k) = sum(products(model, plan, smoothing, is_fitted .and. wants_fit(k), own(1), &
                                own(k + 1))) &
                   + hourglass_work(model, plan, u(:, :, 1), u(:, :, k + 1))
+      is_known(k) = shows_error(model, plan, smoothing, own(1), own(k + 1))
     end do
   end subroutine weigh_defects
 
   !> The same where the displacements are those under the forces of the result itself, with fitted
   !> stresses in all elements.
-  subroutine weigh_own_defects(model, plan, smoothing, u, change)
+  subroutine weigh_own_defects(model, plan, smoothing, u, change, is_known)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
     real(rk), intent(in) :: u(:, :, :) !< (3, nodes, results) displacements
     real(rk), intent(out) :: change(:) !< (results) force times displacement
+    logical, intent(out) :: is_known(:) !< (results) not where solids without neighbours count
     type(point_fields) :: own(size(u, 3))
     logical :: is_fitted(plan%num_solids)
     integer :: k
@@ -66,8 +69,24 @@ contains
     do k = 1, size(change)
       change(k) = sum(products(model, plan, smoothing, is_fitted, own(k), own(k))) &
                   + hourglass_work(model, plan, u(:, :, k), u(:, :, k))
+      is_known(k) = shows_error(model, plan, smoothing, own(k), own(k))
     end do
   end subroutine weigh_own_defects
+
+  !> Whether the defects of two fields show their error: not where solids without neighbours have
+  !> much of the energy.
+  logical function shows_error(model, plan, smoothing, first, second)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(smoothing_plan), intent(in) :: smoothing
+    type(point_fields), intent(in) :: first, second
+    real(rk), dimension(plan%num_solids) :: of_first, of_second
+    shows_error = .not. any(smoothing%is_alone)
+    if (shows_error) return
+    call energy_of_stresses(model, plan, smoothing, first%stress, first%stress, of_first)
+    call energy_of_stresses(model, plan, smoothing, second%stress, second%stress, of_second)
+    shows_error = .not. hides_error(smoothing, of_first, of_second)
+  end function shows_error
 
   !> What fields of displacements give at the points of the solids.
   subroutine find_fields(model, plan, smoothing, u, wants_fit, is_all_fitted, own)

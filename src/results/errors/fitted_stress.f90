@@ -13,7 +13,8 @@ module fitted_stress
 
   integer, parameter :: terms = 4 !< 1, x, y, z
 
-  !> What the fits need of the mesh. A patch is a node with the solids of one section around it.
+  !> What the fits need of the mesh. A patch is a node with the solids of one kind
+  !> of material around it.
   type :: patch_fit
     real(rk), allocatable :: x(:, :) !< (3, patches) the node [m]
     real(rk), allocatable :: size(:) !< (patches) of its solids [m]

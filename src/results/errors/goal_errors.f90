@@ -161,6 +161,7 @@ contains
     type(dual_solution), intent(in) :: duals(:)
     real(rk), intent(out) :: error(:) !< (duals) -1: not known [m]
     real(rk), allocatable :: u(:, :, :)
+    logical :: is_known(size(duals))
     integer :: k
     call stresses%need_smoothing(model)
     allocate (u(3, size(now%u, 2), 1 + size(duals)))
@@ -169,8 +170,8 @@ contains
       u(:, :, k + 1) = duals(k)%u
     end do
     call weigh_defects(model, stresses%plan, stresses%smoothing, u, duals%goal == of_displacement, &
-                       error)
-    error = abs(error)
+                       error, is_known)
+    error = merge(abs(error), -1.0_rk, is_known)
     if (has_reduced(stresses%plan)) where (duals%goal == of_opening) error = -1.0_rk
   end subroutine weigh_duals
 
@@ -180,15 +181,18 @@ contains
     type(problem), intent(in) :: model
     type(recovered_fields), intent(inout) :: stresses
     real(rk), intent(in) :: shape(:, :, :) !< (3, nodes, modes) unit modal mass
-    real(rk), allocatable, intent(out) :: stiffening(:) !< (modes) [1/s2]
+    !> (modes) [1/s2]; not allocated where that of a mode is not known
+    real(rk), allocatable, intent(out) :: stiffening(:)
+    logical :: is_known(size(shape, 3))
     integer :: k, last
     call stresses%need_smoothing(model)
     allocate (stiffening(size(shape, 3)))
     do k = 1, size(shape, 3), modes_at_once
       last = min(size(shape, 3), k + modes_at_once - 1)
       call weigh_own_defects(model, stresses%plan, stresses%smoothing, shape(:, :, k:last), &
-                             stiffening(k:last))
+                             stiffening(k:last), is_known(k:last))
     end do
+    if (.not. all(is_known)) deallocate (stiffening)
   end subroutine find_stiffening
 
   !> Whether solids have one point: estimates of openings are up to 60 times the error

@@ -56,7 +56,8 @@ contains
     end if
   end function error_at_node
 
-  !> The patches (a node with the solids of one section) of the solids in the mean of a node.
+  !> The patches (a node with the solids of one kind of material) of the solids in the mean of a
+  !> node.
   subroutine list_patches(stresses, node, patches)
     type(recovered_fields), intent(in) :: stresses
     integer, intent(in) :: node

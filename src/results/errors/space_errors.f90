@@ -4,6 +4,7 @@ module space_errors
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
+  use stress_error, only: hides_error
   use stress_fields, only: recovered_fields
   implicit none
   private
@@ -22,7 +23,7 @@ module space_errors
     real(rk) :: sampled = 0.0_rk !< largest strain energy at a sample [J]
     real(rk) :: elastic = 1.0_rk !< part of the volume that is elastic: the others are left out
   contains
-    procedure :: relative
+    procedure :: relative, is_unknown
   end type space_error
 
 contains
@@ -32,6 +33,12 @@ contains
     class(space_error), intent(in) :: self
     relative = self%error/max(tiny(1.0_rk), hypot(self%stress, self%error))
   end function relative
+
+  !> Whether samples were due and the error of none of them is known.
+  pure logical function is_unknown(self)
+    class(space_error), intent(in) :: self
+    is_unknown = self%sampled > 0.0_rk .and. self%stress <= 0.0_rk
+  end function is_unknown
 
   !> Takes a sample where one is due.
   subroutine note_space_error(model, now, stresses, record)
@@ -54,6 +61,9 @@ contains
     if (now%energy%strain <= round_off*abs(now%motion%thermal_energy)) return
     record%sampled = max(record%sampled, now%energy%strain)
     call stresses%need_error(model, now)
+    associate (energy => stresses%stress_energy)
+      if (hides_error(stresses%smoothing, energy, energy)) return
+    end associate
     norm = sqrt(sum(stresses%stress_energy, mask=.not. stresses%is_inelastic))
     if (norm <= record%stress) return
     record%stress = norm

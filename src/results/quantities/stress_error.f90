@@ -1,27 +1,36 @@
 !> The error that the mesh leaves in the stresses: the stress of the elements compared with a
 !> smooth stress (theory.md, 14.1).
 !>
-!> The smooth stress has one value for each node and section, the mean of the corners there, and the
-!> shape functions of the element between the nodes. Across sections it may jump.
+!> The smooth stress has one value for each node and kind of material, the mean of the corners
+!> there, and the shape functions of the element between the nodes. It may jump between materials
+!> whose stiffness or thermal expansion differ.
 module stress_error
   use kinds, only: rk
   use dam_mesh, only: fe_mesh
   use hex8_slopes, only: slopes_at_points
+  use material_law, only: material
   use problem_definition, only: problem
   use shape_hex8, only: corners_from_points, corner_of_point, hex8_dofs, point_shape
   use small_matrix, only: solve_dense
   use analysis_state, only: state
   use stress_recovery, only: recovery_plan, motion_of_element, max_points, few_nodes
   use tensor6, only: sum_tensors
+  use thermal_expansion, only: expands_alike
   implicit none
   private
   public :: smoothing_plan, make_smoothing_plan, stress_defect, compare_smooth, energy_of_stresses
-  public :: repeat_single_points, add_hourglass_energy
+  public :: repeat_single_points, add_hourglass_energy, hides_error
 
-  !> A patch is a node with the solids of one section around it.
+  !> Share of the strain energy in solids without neighbours above which nothing is known of the
+  !> error: a stress that jumps to no other one has no defect. Below, what is missed is small
+  !> against the other uncertainty of the estimate, a factor of two.
+  real(rk), parameter :: most_alone = 0.05_rk
+
+  !> A patch is a node with the solids of one kind of material around it.
   type :: smoothing_plan
     integer :: num_patches = 0
     integer, allocatable :: patch(:, :) !< (8, solids)
+    logical, allocatable :: is_alone(:) !< (solids) in all its patches: its stress is its own mean
     real(rk), allocatable :: volume(:, :) !< (points, solids) [m3]
     real(rk), allocatable :: compliance(:, :, :) !< (6, 6, materials) [1/Pa]
   end type smoothing_plan
@@ -35,7 +44,9 @@ contains
     type(smoothing_plan), intent(out) :: smoothing
     real(rk) :: slope(8, 3, 8), x(3, 8)
     integer :: s, status
-    call number_patches(model%mesh, plan, smoothing)
+    call invert_stiffness(model, smoothing%compliance)
+    call number_patches(model%mesh, plan, kinds_of_materials(model%materials, &
+                                                             smoothing%compliance), smoothing)
     allocate (smoothing%volume(max_points, plan%num_solids))
     !$omp parallel do default(none) shared(model, plan, smoothing) private(slope, x, status) &
     !$omp schedule(static) if (plan%num_solids > few_nodes)
@@ -44,44 +55,91 @@ contains
       call slopes_at_points(x, slope, smoothing%volume(:, s), status)
     end do
     !$omp end parallel do
-    call invert_stiffness(model, smoothing%compliance)
   end subroutine make_smoothing_plan
 
-  !> Numbers the pairs of node and section: the patches of a node form a chain.
-  subroutine number_patches(mesh, plan, smoothing)
+  !> The first material with the elastic stiffness and thermal expansion of each material: stresses
+  !> do not jump between elastic materials of one kind.
+  pure function kinds_of_materials(materials, compliance) result(kind_of)
+    type(material), intent(in) :: materials(:)
+    real(rk), intent(in) :: compliance(:, :, :) !< (6, 6, materials) [1/Pa]
+    integer :: kind_of(size(materials))
+    integer :: m, k
+    do m = 1, size(materials)
+      do k = 1, m
+        if (any(abs(compliance(:, :, k) - compliance(:, :, m)) > 0.0_rk)) cycle
+        if (expands_alike(materials(k)%expansion, materials(m)%expansion)) exit
+      end do
+      kind_of(m) = min(k, m)
+    end do
+  end function kinds_of_materials
+
+  !> Numbers the pairs of node and kind of material: the patches of a node form a chain.
+  subroutine number_patches(mesh, plan, kind_of_material, smoothing)
     type(fe_mesh), intent(in) :: mesh
     type(recovery_plan), intent(in) :: plan
+    integer, intent(in) :: kind_of_material(:) !< (materials)
     type(smoothing_plan), intent(inout) :: smoothing
-    integer, allocatable :: first(:), next(:), section(:)
+    integer, allocatable :: first(:), next(:), kind_of(:)
     integer :: s, a, e, p
     allocate (smoothing%patch(8, plan%num_solids))
-    allocate (first(mesh%num_nodes), next(8*plan%num_solids), section(8*plan%num_solids), source=0)
+    allocate (first(mesh%num_nodes), next(8*plan%num_solids), kind_of(8*plan%num_solids), source=0)
     do s = 1, plan%num_solids
       e = plan%element_of_solid(s)
       do a = 1, 8
         p = first(mesh%nodes(a, e))
         do while (p > 0)
-          if (section(p) == section_of(e)) exit
+          if (kind_of(p) == kind_of_element(e)) exit
           p = next(p)
         end do
         if (p == 0) then
           smoothing%num_patches = smoothing%num_patches + 1
           p = smoothing%num_patches
-          section(p) = section_of(e)
+          kind_of(p) = kind_of_element(e)
           next(p) = first(mesh%nodes(a, e))
           first(mesh%nodes(a, e)) = p
         end if
         smoothing%patch(a, s) = p
       end do
     end do
+    call find_lone_solids(smoothing)
   contains
-    !> The section of a solid; those that are absent have one of their own.
-    pure integer function section_of(element)
+    !> The kind of material of a solid; those that are absent have one of their own.
+    pure integer function kind_of_element(element)
       integer, intent(in) :: element
-      section_of = -1
-      if (mesh%material_of_element(element) > 0) section_of = mesh%section_of_element(element)
-    end function section_of
+      kind_of_element = -1
+      associate (m => mesh%material_of_element(element))
+        if (m > 0) kind_of_element = kind_of_material(m)
+      end associate
+    end function kind_of_element
   end subroutine number_patches
+
+  !> Marks the solids that share no patch with another one.
+  pure subroutine find_lone_solids(smoothing)
+    type(smoothing_plan), intent(inout) :: smoothing
+    integer :: last(smoothing%num_patches), s
+    logical :: is_shared(smoothing%num_patches)
+    last = 0
+    is_shared = .false.
+    do s = 1, size(smoothing%patch, 2)
+      associate (own => smoothing%patch(:, s))
+        is_shared(own) = is_shared(own) .or. (last(own) /= 0 .and. last(own) /= s)
+        last(own) = s
+      end associate
+    end do
+    smoothing%is_alone = [(.not. any(is_shared(smoothing%patch(:, s))), &
+                           s=1, size(smoothing%patch, 2))]
+  end subroutine find_lone_solids
+
+  !> Whether solids without neighbours have too much of the energy for an estimate. Of two fields of
+  !> stresses it is the root of the product of their shares: it bounds that of their common energy.
+  pure logical function hides_error(smoothing, first, second)
+    type(smoothing_plan), intent(in) :: smoothing
+    real(rk), intent(in) :: first(:), second(:) !< (solids) energies of the fields [J]
+    associate (is_alone => smoothing%is_alone)
+      hides_error = sqrt(sum(first, mask=is_alone))*sqrt(sum(second, mask=is_alone)) > &
+                    most_alone*sqrt(sum(first))*sqrt(sum(second))
+    end associate
+  end function hides_error
 
   !> The elastic compliance of each material; zero for materials of joints alone.
   subroutine invert_stiffness(model, compliance)

@@ -141,6 +141,7 @@ contains
     if (any(record%joints%slip%at(1)%is_found)) then
       if (any(record%joints%slip%at(1)%value > 0.0_rk)) names = names//', slips'
     end if
+    if (record%space%is_unknown()) names = names//', stresses'
     if (names == '') return
     text = nl//'errors not estimated: '//names(3:)//' (docs/accuracy.md); tools/accuracy '// &
            'measures them'

@@ -1,6 +1,7 @@
 !> Messages about cards that do not agree with their specification, letter by letter.
 program test_card_check
-  use card_check, only: check_card, match_card
+  use card_check, only: check_card
+  use card_match, only: match_card
   use deck_card, only: card
   use deck_lexer, only: read_cards
   use diagnostic_text, only: text_of_errors, text_of_warnings
