@@ -5,7 +5,7 @@
 !> the farthest node as radius, so that all are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
-  use dam_mesh, only: node_tie
+  use dam_mesh, only: fe_mesh, node_tie
   use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
@@ -13,7 +13,7 @@ module rigid_blocks
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: block_set, find_blocks, find_tied_parts, jump_rows, add_supports, add_tie
+  public :: block_set, find_blocks, find_tied_parts, join_blocks, jump_rows, add_supports, add_tie
   public :: add_square
 
   type :: block_set
@@ -67,6 +67,25 @@ contains
     call number_blocks(model, parent, parts)
     call measure_blocks(model%mesh%x, parts)
   end subroutine find_tied_parts
+
+  !> Joins blocks to bodies.
+  subroutine join_blocks(mesh, blocks, body_of, bodies)
+    type(fe_mesh), intent(in) :: mesh
+    type(block_set), intent(in) :: blocks
+    integer, intent(in) :: body_of(:) !< (blocks) 1, 2, .. in the order of their first blocks
+    type(block_set), intent(out) :: bodies
+    integer :: b
+    bodies%num_blocks = maxval([0, body_of])
+    allocate (bodies%block_of(size(blocks%block_of)), bodies%example(bodies%num_blocks), source=0)
+    where (blocks%block_of > 0) bodies%block_of = body_of(max(blocks%block_of, 1))
+    do b = 1, blocks%num_blocks
+      associate (first => bodies%example(body_of(b)), own => blocks%example(b))
+        if (first == 0) first = own
+        if (mesh%element_id(own) < mesh%element_id(first)) first = own
+      end associate
+    end do
+    call measure_blocks(mesh%x, bodies)
+  end subroutine join_blocks
 
   !> Unites the nodes of each element.
   subroutine unite_elements(model, with_joints, parent)
@@ -214,16 +233,18 @@ contains
     end do
   end subroutine add_supports
 
-  !> Adds the rows of a tie or of equations to the matrix sum row^T row: the displacement of each
+  !> Adds some rows of a tie or of equations to the matrix sum row^T row: the displacement of each
   !> node that follows less those that it follows, over the norm of the weights.
-  subroutine add_tie(parts, x, tie, matrix)
+  subroutine add_tie(parts, x, tie, rows, matrix)
     type(block_set), intent(in) :: parts
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(node_tie), intent(in) :: tie
+    integer, intent(in) :: rows(:)
     real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
     real(rk) :: row(6, parts%num_blocks)
-    integer :: i, k, d, item_direction
-    do i = 1, size(tie%node)
+    integer :: i, j, k, d, item_direction
+    do j = 1, size(rows)
+      i = rows(j)
       do d = 1, 3
         if (.not. tie%is_tied(d, i)) cycle
         row = 0.0_rk
