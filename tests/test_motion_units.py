@@ -57,6 +57,24 @@ def test_a_deck_in_millimetres(program_path, tmp_path) -> None:
     assert "warning" not in done.stderr
 
 
+@pytest.mark.parametrize("density, young", [("2.4", "22e6"), ("2.4e-3", "22e3")], ids=["kN", "MN"])
+def test_a_deck_in_metres_and_other_forces(density, young, program_path, tmp_path) -> None:
+    """Gravity of 9.81 and a record in m/s2 are right in decks in t, m, s and in kt, m, s."""
+    deck = BASE.read_text(encoding="utf-8").replace("2400.", density).replace("22e9", young)
+    deck = deck.replace(
+        "*STEP\n*STATIC\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n",
+        "*AMPLITUDE, NAME=QUAKE, UNIT=G\n0., 0., 0.5, 0.3, 1., 0.\n*STEP\n"
+        "*DYNAMIC\n0.01, 1.\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n"
+        "*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n",
+    )
+    (tmp_path / "deck.inp").write_text(deck, encoding="utf-8")
+    command = [str(program_path.resolve()), "--check", "deck.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert f"not SI (a *DENSITY of {float(density)!r})" in done.stdout
+    assert ", peak 2.943 m/s2 = 0.3000 g at t = 0.5 s" in done.stdout
+    assert "not in SI" not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("header", "amplitude", "motion", "expected"),
     [

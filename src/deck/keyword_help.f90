@@ -178,14 +178,17 @@ contains
     same_family = text_or_nothing(a%family) == text_or_nothing(b%family)
   end function same_family
 
-  !> The text up to its first full stop.
+  !> The text up to its first full stop. One before a figure ends no sentence: 'Eq. 15'.
   pure function first_sentence(text) result(sentence)
     character(*), intent(in) :: text
     character(:), allocatable :: sentence
-    integer :: full_stop
-    full_stop = index(text, '. ')
-    if (full_stop == 0) full_stop = len(text) + 1
-    sentence = text(:full_stop - 1)
+    integer :: i
+    sentence = text
+    do i = 1, len(text) - 2
+      if (text(i:i + 1) /= '. ' .or. scan(text(i + 2:i + 2), '0123456789') > 0) cycle
+      sentence = text(:i - 1)
+      return
+    end do
     if (len(sentence) == 0) return
     if (sentence(len(sentence):) == '.') sentence = sentence(:len(sentence) - 1)
   end function first_sentence

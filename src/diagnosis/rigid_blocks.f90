@@ -5,8 +5,7 @@
 !> the farthest node as radius, so that all are lengths (different_meshes.md, 13.7).
 module rigid_blocks
   use body_parts, only: root_of, unite
-  use dam_mesh, only: node_tie
-  use guest_list, only: ties_of
+  use dam_mesh, only: fe_mesh, node_tie
   use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
@@ -14,14 +13,13 @@ module rigid_blocks
   use small_matrix, only: cross_product
   implicit none
   private
-  public :: block_set, find_blocks, find_tied_parts, jump_rows, add_supports, add_tie
+  public :: block_set, find_blocks, find_tied_parts, join_blocks, jump_rows, add_supports, add_tie
   public :: add_square
 
   type :: block_set
     integer :: num_blocks = 0
-    integer :: num_points = 0 !< of the blocks, the last: nodes without an element, each for itself
     integer, allocatable :: block_of(:) !< (nodes) 0: a node without an element
-    integer, allocatable :: example(:) !< (blocks with elements) lowest element (position)
+    integer, allocatable :: example(:) !< (blocks) element with the lowest number (position)
     real(rk), allocatable :: centre(:, :) !< (3, blocks) mean of the nodes [m]
     real(rk), allocatable :: radius(:) !< (blocks) [m]
   end type block_set
@@ -46,8 +44,7 @@ contains
   end subroutine find_blocks
 
   !> Finds the parts of a model that ties and equations alone connect: joints and springs count as
-  !> rigid. Nodes of ties without an element pass on motions: each is a part, as a point. Those that
-  !> belong to something else, as a spring, are left out.
+  !> rigid.
   subroutine find_tied_parts(model, parts)
     type(problem), intent(in) :: model
     type(block_set), intent(out) :: parts
@@ -68,29 +65,27 @@ contains
     end do
     call unite_bonds(bonds, parent)
     call number_blocks(model, parent, parts)
-    call ties_of(model%guests, ties)
-    do i = 1, size(ties)
-      call add_points(ties(i)%node, parent, parts)
-      call add_points(ties(i)%item(:ties(i)%first(size(ties(i)%node) + 1) - 1), parent, parts)
-    end do
     call measure_blocks(model%mesh%x, parts)
-    ! Any length: points do not rotate.
-    parts%radius(parts%num_blocks - parts%num_points + 1:) = maxval(parts%radius)
   end subroutine find_tied_parts
 
-  !> Makes blocks of nodes that no element and no bond has.
-  subroutine add_points(nodes, parent, parts)
-    integer, intent(in) :: nodes(:)
-    integer, intent(in) :: parent(:)
-    type(block_set), intent(inout) :: parts
-    integer :: i
-    do i = 1, size(nodes)
-      if (parts%block_of(nodes(i)) > 0 .or. parent(nodes(i)) > 0) cycle
-      parts%num_blocks = parts%num_blocks + 1
-      parts%num_points = parts%num_points + 1
-      parts%block_of(nodes(i)) = parts%num_blocks
+  !> Joins blocks to bodies.
+  subroutine join_blocks(mesh, blocks, body_of, bodies)
+    type(fe_mesh), intent(in) :: mesh
+    type(block_set), intent(in) :: blocks
+    integer, intent(in) :: body_of(:) !< (blocks) 1, 2, .. in the order of their first blocks
+    type(block_set), intent(out) :: bodies
+    integer :: b
+    bodies%num_blocks = maxval([0, body_of])
+    allocate (bodies%block_of(size(blocks%block_of)), bodies%example(bodies%num_blocks), source=0)
+    where (blocks%block_of > 0) bodies%block_of = body_of(max(blocks%block_of, 1))
+    do b = 1, blocks%num_blocks
+      associate (first => bodies%example(body_of(b)), own => blocks%example(b))
+        if (first == 0) first = own
+        if (mesh%element_id(own) < mesh%element_id(first)) first = own
+      end associate
     end do
-  end subroutine add_points
+    call measure_blocks(mesh%x, bodies)
+  end subroutine join_blocks
 
   !> Unites the nodes of each element.
   subroutine unite_elements(model, with_joints, parent)
@@ -238,16 +233,18 @@ contains
     end do
   end subroutine add_supports
 
-  !> Adds the rows of a tie or of equations to the matrix sum row^T row: the displacement of each
+  !> Adds some rows of a tie or of equations to the matrix sum row^T row: the displacement of each
   !> node that follows less those that it follows, over the norm of the weights.
-  subroutine add_tie(parts, x, tie, matrix)
+  subroutine add_tie(parts, x, tie, rows, matrix)
     type(block_set), intent(in) :: parts
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(node_tie), intent(in) :: tie
+    integer, intent(in) :: rows(:)
     real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
     real(rk) :: row(6, parts%num_blocks)
-    integer :: i, k, d, item_direction
-    do i = 1, size(tie%node)
+    integer :: i, j, k, d, item_direction
+    do j = 1, size(rows)
+      i = rows(j)
       do d = 1, 3
         if (.not. tie%is_tied(d, i)) cycle
         row = 0.0_rk

@@ -2,6 +2,7 @@
 !> joints last.
 module solver_cholmod
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
+  use cholmod_status, only: plan_failure
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
   use factor_top, only: choose_top, top_of_factor
@@ -168,7 +169,7 @@ contains
       end if
     end if
     if (status /= 0) then
-      call raise(error, 'no memory to plan the factor of the stiffness', system_failed)
+      call raise(error, plan_failure(status), system_failed)
       return
     end if
     if (allocated(self%order)) deallocate (self%order)

@@ -4,6 +4,7 @@ set(sources
   blas_threads.f90
   cholmod_bridge.c
   distributed/petsc_equations.f90
+  elimination/cholmod_status.f90
   elimination/factor_top.f90
   elimination/group_dissection.f90
   elimination/metis_bridge.c

@@ -8,16 +8,19 @@ module verify_ties
   use guest_list, only: supports_of_step, ties_of
   use kinds, only: rk
   use model_draft, only: draft
-  use rigid_blocks, only: add_supports, block_set, find_tied_parts
+  use rigid_blocks, only: add_supports, block_set, find_tied_parts, join_blocks
   use symmetric_modes, only: find_modes
-  use tie_resistance, only: add_resistance, scale_parts
+  use tie_resistance, only: add_resistance, list_resistance, part_resistance, scale_parts, &
+                            unite_held
   use write_text, only: as_text
   implicit none
   private
   public :: verify_tied_parts
 
-  integer, parameter :: most_parts = 100 !< more are not checked
-  !> Of the largest, in squares. A chain of 100 parts has 1e-10, round-off 1e-15.
+  !> Bodies of parts that ties hold to each other by hinges alone, or not at all; more are not
+  !> checked: the modes of 100 bodies take 0.3 s, and the cost grows with the cube.
+  integer, parameter :: most_bodies = 100
+  !> Of the largest, in squares. A chain of 100 bodies has 1e-10, round-off 1e-15.
   real(rk), parameter :: least_resistance = 1.0e-12_rk
   !> A smaller share of a part in the free motions, squared, is round-off.
   real(rk), parameter :: no_share = 1.0e-6_rk
@@ -29,35 +32,33 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(node_tie), allocatable :: ties(:)
-    type(block_set) :: parts
+    type(block_set) :: parts, bodies
+    type(part_resistance), allocatable :: list(:)
     type(error_type), allocatable :: error
     real(rk), allocatable :: by_ties(:, :), matrix(:, :), checked(:, :)
     real(rk), allocatable :: resistance(:), motions(:, :)
-    integer, allocatable :: node(:), direction(:)
-    integer :: i, k, free, num_free, num_bodies
+    integer, allocatable :: node(:), direction(:), body_of(:)
+    integer :: i, num_free
     call ties_of(model%problem%guests, ties)
     if (size(ties) == 0) return
     call find_tied_parts(model%problem, parts)
-    num_bodies = parts%num_blocks - parts%num_points
-    if (num_bodies < 2 .or. parts%num_blocks > most_parts) return
-    if (.not. all(have_parts(parts, ties))) return ! nodes of springs may pass on motions
-    allocate (by_ties(6*parts%num_blocks, 6*parts%num_blocks), source=0.0_rk)
-    do i = 1, size(ties)
-      call add_resistance(parts, model%problem%mesh%x, ties(i), by_ties, error)
-      if (allocated(error)) return
-    end do
-    do i = num_bodies + 1, parts%num_blocks ! points do not rotate
-      do k = 6*i - 2, 6*i
-        by_ties(k, k) = 1.0_rk
-      end do
-    end do
+    if (parts%num_blocks < 2) return
+    if (.not. all(have_elements(parts, ties))) return ! nodes without elements may pass on motions
+    call list_resistance(parts, model%problem%mesh%x, ties, list, error)
+    if (allocated(error)) return
+    call unite_held(list, parts%num_blocks, body_of, error)
+    if (allocated(error)) return
+    call join_blocks(model%problem%mesh, parts, body_of, bodies)
+    if (bodies%num_blocks > most_bodies) return
+    allocate (by_ties(6*bodies%num_blocks, 6*bodies%num_blocks), source=0.0_rk)
+    call add_resistance(bodies, body_of, list, by_ties)
     checked = 0.0_rk*by_ties
     do i = 1, size(model%problem%steps)
       if (model%problem%steps(i)%procedure%has_inertia) cycle
       matrix = by_ties
       call supports_of_step(model%problem, model%problem%steps(i), node, direction)
-      call add_supports(parts, model%problem%mesh%x, node, direction, matrix)
-      call hold_absent(model, i, parts, matrix)
+      call add_supports(bodies, model%problem%mesh%x, node, direction, matrix)
+      call hold_absent(model, i, parts, body_of, matrix)
       call scale_parts(matrix)
       if (all(abs(matrix - checked) <= 0.0_rk)) cycle
       checked = matrix
@@ -65,28 +66,27 @@ contains
       if (allocated(error)) return
       num_free = count(resistance <= least_resistance*maxval(resistance))
       if (num_free == 0) cycle
-      free = freest_body(num_bodies, motions(:, :num_free))
-      if (free == 0) cycle
-      call fault_part(model, i, parts, free, motions(6*free - 5:6*free, :num_free), faults)
+      call fault_part(model, i, bodies, motions(:, :num_free), faults)
       return
     end do
   end subroutine verify_tied_parts
 
-  !> Whether all nodes of a tie belong to parts.
-  elemental logical function have_parts(parts, tie)
+  !> Whether all nodes of a tie belong to elements.
+  elemental logical function have_elements(parts, tie)
     type(block_set), intent(in) :: parts
     type(node_tie), intent(in) :: tie
-    have_parts = all(parts%block_of(tie%node) > 0) &
-                 .and. all(parts%block_of(tie%item(:tie%first(size(tie%node) + 1) - 1)) > 0)
-  end function have_parts
+    have_elements = all(parts%block_of(tie%node) > 0) &
+                    .and. all(parts%block_of(tie%item(:tie%first(size(tie%node) + 1) - 1)) > 0)
+  end function have_elements
 
-  !> Parts that *MODEL CHANGE has taken out in a step do not move.
-  subroutine hold_absent(model, number, parts, matrix)
+  !> Parts that *MODEL CHANGE has taken out in a step do not move, nor do bodies with such parts.
+  subroutine hold_absent(model, number, parts, body_of, matrix)
     type(draft), intent(in) :: model
     integer, intent(in) :: number !< of the step
     type(block_set), intent(in) :: parts
-    real(rk), intent(inout) :: matrix(:, :) !< (6*parts, 6*parts)
-    logical :: is_there(parts%num_blocks - parts%num_points)
+    integer, intent(in) :: body_of(:) !< (parts)
+    real(rk), intent(inout) :: matrix(:, :) !< (6*bodies, 6*bodies)
+    logical :: is_there(parts%num_blocks)
     integer :: b, e, k
     if (.not. allocated(model%problem%stages%is_absent)) return
     is_there = .false.
@@ -97,50 +97,43 @@ contains
         if (b > 0) is_there(b) = .true.
       end do
     end associate
-    do b = 1, size(is_there)
+    do b = 1, parts%num_blocks
       if (is_there(b)) cycle
-      do k = 6*b - 5, 6*b
+      do k = 6*body_of(b) - 5, 6*body_of(b)
         matrix(k, k) = matrix(k, k) + 1.0_rk
       end do
     end do
   end subroutine hold_absent
 
-  !> The part with elements that has the largest share in the free motions; 0 for none.
-  pure integer function freest_body(num_bodies, motions) result(free)
-    integer, intent(in) :: num_bodies !< the first parts
-    real(rk), intent(in) :: motions(:, :) !< (6*parts, motions) orthonormal
-    integer :: b
-    free = 1
-    do b = 2, num_bodies
-      ! Of equal shares, which differ by round-off, the first.
-      if (norm2(motions(6*b - 5:6*b, :)) > (1.0_rk + no_share) &
-          *norm2(motions(6*free - 5:6*free, :))) free = b
-    end do
-    if (norm2(motions(6*free - 5:6*free, :))**2 <= no_share) free = 0
-  end function freest_body
-
-  !> Reports a part that is free.
-  subroutine fault_part(model, number, parts, free, own, faults)
+  !> Reports the part with the largest share in the free motions.
+  subroutine fault_part(model, number, bodies, motions, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: number !< of the step
-    type(block_set), intent(in) :: parts
-    integer, intent(in) :: free !< part
-    real(rk), intent(in) :: own(:, :) !< (6, motions) its share in the free motions
+    type(block_set), intent(in) :: bodies
+    real(rk), intent(in) :: motions(:, :) !< (6*bodies, motions) orthonormal
     type(diagnostic_list), intent(inout) :: faults
     type(error_type), allocatable :: error
     real(rk), allocatable :: share(:), motion(:, :)
     character(:), allocatable :: text
-    integer :: first
-    call find_modes(matmul(own, transpose(own)), share, motion, error)
+    integer :: b, free, first
+    free = 1
+    do b = 2, bodies%num_blocks
+      ! Of equal shares, which differ by round-off, the first.
+      if (norm2(motions(6*b - 5:6*b, :)) > (1.0_rk + no_share) &
+          *norm2(motions(6*free - 5:6*free, :))) free = b
+    end do
+    associate (own => motions(6*free - 5:6*free, :))
+      call find_modes(matmul(own, transpose(own)), share, motion, error)
+    end associate
     if (allocated(error)) return
     first = findloc(share > no_share, .true., 1)
     if (first == 6) then
-      text = 'the block can '//freedom_text(parts, free, motion(:, 6:))
+      text = 'the block can '//freedom_text(bodies, free, motion(:, 6:))
     else ! the axes of several motions are any of their space
       text = 'the block has '//as_text(7 - first)//' free motions'
     end if
     call model%cards(model%procedure_card(number))%fault( &
-      faults, block_name(model%problem, parts, free)//' is free to move: '//text// &
+      faults, block_name(model%problem, bodies, free)//' is free to move: '//text// &
       ', which ties, equations and supports do not prevent', &
       'ties over faces, not along one line, or supports of this part')
   end subroutine fault_part

@@ -52,14 +52,17 @@ def test_a_lever(keyway, first):
     assert run.csv("energy")["error"].max() < 1e-9
 
 
-def test_sets_in_the_order_of_the_deck(keyway):
-    """Nodes of UNSORTED sets are pairs as the deck lists them; others by their ids."""
+@pytest.mark.parametrize("num_more", [0, 20])
+def test_sets_in_the_order_of_the_deck(keyway, num_more):
+    """Nodes of UNSORTED sets are pairs as the deck lists them, also where many sets follow; others
+    by their ids."""
     blocks = Blocks()
     blocks.add("LEFT", (2, 0, 1), (1, 0, 1), (1, 0, 1))
     blocks.add("RIGHT", (3, 0, 1), (1, 2, 3), (1, 0, 1))
     a, b = blocks.side("LEFT", "X1") + 1, blocks.side("RIGHT", "X1") + 1
     lines = [f"*NSET, NSET=A, UNSORTED\n{a[0]}\n*NSET, NSET=A\n{a[1]}, {a[2]}, {a[3]}\n"]
     lines.append(f"*NSET, NSET=B, UNSORTED\n{b[3]}, {b[0]}, {b[1]}, {b[3]}, {b[2]}\n")
+    lines += [f"*NSET, NSET=MORE{k}\n{a[0]}\n" for k in range(num_more)]
     lines.append(hold(blocks, "LEFT_X0", "RIGHT_X0") + equations("A, 1, 1., B, 1, -1."))
     deck = blocks.deck({"": ELASTIC}, "".join(lines))
     load = f"*CLOAD\n{a[0]}, 1, 1e3\n{a[1]}, 1, 2e3\n{a[2]}, 1, -1e3\n"

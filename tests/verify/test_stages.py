@@ -106,6 +106,17 @@ def test_removing_a_lift_with_weight_and_adding_it_again(keyway):
     balances(run)
 
 
+def test_an_element_that_is_gone_has_no_energy(keyway, monkeypatch):
+    """ENER of an absent element is zero, whatever memory held before."""
+    monkeypatch.setenv("MALLOC_PERTURB_", "120")
+    output = OUTPUT.replace("S, E\n", "S, ENER\n")
+    run = keyway(lifts(2) + step(LOAD + output) + step(remove("L2")))
+    rows = run.csv("el_BODY")
+    energy = {s: rows["ENER"][(rows["step"] == s) & (rows["element"] == 2)] for s in (1, 2)}
+    assert energy[1].max() > 0.0
+    assert (energy[2] == 0.0).all()
+
+
 def test_the_change_acts_over_the_step(keyway):
     """Half of the weight of a lift acts after half of its step, so does its absence."""
     run = keyway(

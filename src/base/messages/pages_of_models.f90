@@ -163,7 +163,8 @@ contains
                   'The numbers of the deck are of another system of units than the defaults of '// &
                   'the keyword (1000 kg/m3, 9.81 m/s2), or of two systems.', &
                   'Use one system in the whole deck and give DENSITY and GRAVITY in it. With '// &
-                  'tonnes, millimetres and seconds, water has 1e-9 and gravity is 9810.', &
+                  'tonnes, millimetres and seconds, water has 1e-9 and gravity is 9810; with '// &
+                  'tonnes, metres and seconds (kN) water has 1.', &
                   '*RESERVOIR without DENSITY in a deck in mm', &
                   'DENSITY=1e-9, GRAVITY=9810')
     call list%add('motion-record', &

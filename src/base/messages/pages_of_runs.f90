@@ -81,6 +81,14 @@ contains
 
   subroutine pages_from_no_memory(list)
     type(page_list), intent(inout) :: list
+    call list%add('large-factor', &
+                  'more than 2^31 entries', &
+                  'One process counts the entries of the factor with 32 bits. The model has '// &
+                  'more of them.', &
+                  'Several processes divide the factor (docs/large_models.md). A coarser mesh '// &
+                  'has a smaller one; keyway --check forecasts its size.', &
+                  'keyway -j 16 dam.inp', &
+                  'mpiexec -n 8 keyway dam.inp')
     call list%add('no-memory', &
                   'no memory|out of memory|memory', &
                   'The system does not give the memory that the analysis needs.', &

@@ -3,6 +3,7 @@
 !> changes forces on these unknowns alone, and wants these alone, needs no other part of the factor.
 module factor_top
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_null_ptr, c_ptr
+  use errors, only: error_type, raise, system_failed
   use kinds, only: rk
   implicit none
   private
@@ -27,23 +28,25 @@ module factor_top
       integer(c_int) :: status
     end function keyway_cholmod_choose_top
 
-    subroutine keyway_cholmod_add_to_top(handle, n, b, y) bind(c)
+    function keyway_cholmod_add_to_top(handle, n, b, y) result(status) bind(c)
       import :: c_ptr, c_int, c_double
       implicit none
       type(c_ptr), value :: handle
       integer(c_int), value :: n
       real(c_double), intent(in) :: b(n)
       real(c_double), intent(inout) :: y(n)
-    end subroutine keyway_cholmod_add_to_top
+      integer(c_int) :: status
+    end function keyway_cholmod_add_to_top
 
-    subroutine keyway_cholmod_solve_top(handle, n, y, x) bind(c)
+    function keyway_cholmod_solve_top(handle, n, y, x) result(status) bind(c)
       import :: c_ptr, c_int, c_double
       implicit none
       type(c_ptr), value :: handle
       integer(c_int), value :: n
       real(c_double), intent(in) :: y(n)
       real(c_double), intent(inout) :: x(n)
-    end subroutine keyway_cholmod_solve_top
+      integer(c_int) :: status
+    end function keyway_cholmod_solve_top
 
     function keyway_cholmod_start_inverse(handle) result(status) bind(c)
       import :: c_ptr, c_int
@@ -109,19 +112,25 @@ contains
   end subroutine choose_top
 
   !> Adds forces on unknowns of the top to a forward substitution.
-  subroutine add_forces(self, force, half)
+  subroutine add_forces(self, force, half, error)
     class(top_of_factor), intent(in) :: self
     real(rk), intent(in) :: force(:) !< (free unknowns) zero outside of the top
     real(rk), intent(inout) :: half(:) !< (free unknowns) in the order of elimination
-    call keyway_cholmod_add_to_top(self%handle, self%num_free, force, half)
+    type(error_type), allocatable, intent(out) :: error
+    if (keyway_cholmod_add_to_top(self%handle, self%num_free, force, half) /= 0) then
+      call raise(error, 'no memory to solve the equations', system_failed)
+    end if
   end subroutine add_forces
 
   !> The unknowns of the top that follow from a forward substitution; others stay.
-  subroutine solve_for_top(self, half, x)
+  subroutine solve_for_top(self, half, x, error)
     class(top_of_factor), intent(in) :: self
     real(rk), intent(in) :: half(:) !< (free unknowns) in the order of elimination
     real(rk), intent(inout) :: x(:) !< (free unknowns)
-    call keyway_cholmod_solve_top(self%handle, self%num_free, half, x)
+    type(error_type), allocatable, intent(out) :: error
+    if (keyway_cholmod_solve_top(self%handle, self%num_free, half, x) /= 0) then
+      call raise(error, 'no memory to solve the equations', system_failed)
+    end if
   end subroutine solve_for_top
 
   !> Starts the inverse of the matrix in the pattern of the top, without any of its entries.

@@ -48,32 +48,35 @@ int keyway_cholmod_choose_top(void *handle, int n, int count, const int *unknown
   return 0;
 }
 
-/* Adds L^-1 P b to y for a vector b that is zero but at unknowns of the top. */
-void keyway_cholmod_add_to_top(void *handle, int n, const double *b, double *y)
+/* Adds L^-1 P b to y for a vector b that is zero but at unknowns of the top. Returns 0 for
+ * success. */
+int keyway_cholmod_add_to_top(void *handle, int n, const double *b, double *y)
 {
   struct keyway_cholmod *c = handle;
   struct keyway_supernodes l = keyway_supernodes_of(c);
   double *z = calloc((size_t)n, sizeof *z);
-  if (!z) return;
+  if (!z) return -2;
   for (int i = 0; i < n; i++) z[c->place_of[i]] = b[i];
   keyway_substitute_forward(&l, KEYWAY_UPPER, c->is_top, z, c->top_work);
   for (int i = 0; i < n; i++) y[i] += z[i];
   free(z);
+  return 0;
 }
 
-/* The unknowns of the top in P^T L^-T y; other entries of x stay. */
-void keyway_cholmod_solve_top(void *handle, int n, const double *y, double *x)
+/* The unknowns of the top in P^T L^-T y; other entries of x stay. Returns 0 for success. */
+int keyway_cholmod_solve_top(void *handle, int n, const double *y, double *x)
 {
   struct keyway_cholmod *c = handle;
   struct keyway_supernodes l = keyway_supernodes_of(c);
   const int *perm = c->factor->Perm;
   double *z = malloc((size_t)n * sizeof *z);
-  if (!z) return;
+  if (!z) return -2;
   memcpy(z, y, (size_t)n * sizeof *z);
   keyway_substitute_backward(&l, KEYWAY_UPPER, c->is_top, z, c->top_work);
   for (int j = 0; j < n; j++)
     if (c->is_top[c->super_of[j]]) x[perm[j]] = z[j];
   free(z);
+  return 0;
 }
 
 /* Starts the inverse of the matrix in the pattern of the top. Returns 0 for success. */

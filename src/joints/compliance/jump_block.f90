@@ -3,6 +3,7 @@
 !> S = E E^T. The compliance then needs no solves, and Newton's method on the jumps runs between
 !> forward and backward substitution.
 module jump_block
+  use errors, only: error_type
   use factor_top, only: top_of_factor
   use kinds, only: rk
   use matrix_pattern, only: pattern
@@ -114,13 +115,14 @@ contains
   end subroutine apply_rows
 
   !> Stores the jumps that follow from a forward substitution.
-  subroutine store_jumps(self, half, x)
+  subroutine store_jumps(self, half, x, error)
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(inout) :: x(:) !< (all unknowns)
+    type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: d(:)
     if (self%top%is_there) then
-      call self%top%solve_for_top(half, x(:self%num_free))
+      call self%top%solve_for_top(half, x(:self%num_free), error)
       return
     end if
     allocate (d(size(self%unknown)))
@@ -130,13 +132,14 @@ contains
   end subroutine store_jumps
 
   !> Adds forces on the jumps to a forward substitution.
-  subroutine add_jump_forces(self, force, half)
+  subroutine add_jump_forces(self, force, half, error)
     class(jump_schur_block), intent(in) :: self
     real(rk), intent(in) :: force(:) !< (all unknowns) [N]
     real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
+    type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: f(:)
     if (self%top%is_there) then
-      call self%top%add_forces(force(:self%num_free), half)
+      call self%top%add_forces(force(:self%num_free), half, error)
       return
     end if
     f = force(self%unknown)

@@ -183,9 +183,9 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call self%costs%start('correct', 'joints', 'joint')
     if (self%jumps%is_there) then
-      call add_to_half(self, change, half, x)
+      call add_to_half(self, change, half, x, error)
       x = 0.0_rk
-      call self%jumps%store_jumps(half, x)
+      if (.not. allocated(error)) call self%jumps%store_jumps(half, x, error)
       if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
     else
       call add_response(self, change, x, error)
@@ -199,14 +199,15 @@ contains
   end subroutine find_drift
 
   !> Adds joint forces to a forward substitution.
-  subroutine add_to_half(self, change, half, work)
+  subroutine add_to_half(self, change, half, work, error)
     class(condensed_equilibrium), intent(in) :: self
     real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
     real(rk), intent(inout) :: half(:) !< (free unknowns) after forward substitution
     real(rk), intent(out) :: work(:) !< (all unknowns) forces [N]
+    type(error_type), allocatable, intent(out) :: error
     work = 0.0_rk
     call self%operator%add_forces(self%weight*change, work)
-    call self%jumps%add_jump_forces(work, half)
+    call self%jumps%add_jump_forces(work, half, error)
   end subroutine add_to_half
 
   !> Adds the response to a change of the joint forces by a solve.
@@ -241,12 +242,12 @@ contains
     if (self%exact%is_rounded()) call subtract_base(self, half)
     if (self%repeated%is_there(self%factor)) then
       if (.not. balance%is_repeated) call self%repeated%start(self%factor, half, error)
-      call self%repeated%forward(self%factor, half, error)
+      if (.not. allocated(error)) call self%repeated%forward(self%factor, half, error)
     else
       call self%factor%forward_substitute(half, error)
     end if
     x = 0.0_rk
-    call self%jumps%store_jumps(half, x)
+    if (.not. allocated(error)) call self%jumps%store_jumps(half, x, error)
     if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
     call self%costs%stop()
   end subroutine begin_solve
@@ -272,13 +273,15 @@ contains
     type(error_type), allocatable, intent(out) :: error
     if (self%jumps%is_there) then
       call self%costs%start('solve backward', 'structure', 'solver')
-      call add_to_half(self, change, half, x)
+      call add_to_half(self, change, half, x, error)
       x = 0.0_rk
-      if (self%repeated%is_there(self%factor)) then
-        call self%repeated%backward(self%factor, half, is_partial, x(:size(half)), error)
-      else
-        call self%factor%backward_substitute(half, error)
-        x(:size(half)) = half
+      if (.not. allocated(error)) then
+        if (self%repeated%is_there(self%factor)) then
+          call self%repeated%backward(self%factor, half, is_partial, x(:size(half)), error)
+        else
+          call self%factor%backward_substitute(half, error)
+          x(:size(half)) = half
+        end if
       end if
       if (allocated(self%base)) x(:size(half)) = x(:size(half)) + self%base
       call self%costs%stop()

@@ -74,8 +74,10 @@ contains
       call self%unsymmetric_factor%solve(b, error)
     else if (self%repeated%is_there(self%factor)) then
       if (.not. balance%is_repeated) call self%repeated%start(self%factor, balance%rhs, error)
-      call self%repeated%forward(self%factor, b(:, 1), error)
-      call self%repeated%backward(self%factor, b(:, 1), balance%is_partial, x(:size(b, 1)), error)
+      if (.not. allocated(error)) call self%repeated%forward(self%factor, b(:, 1), error)
+      if (.not. allocated(error)) then
+        call self%repeated%backward(self%factor, b(:, 1), balance%is_partial, x(:size(b, 1)), error)
+      end if
       b(:, 1) = x(:size(b, 1))
     else
       call self%solve_with_factor(self%admissible_residual(balance), b, error)

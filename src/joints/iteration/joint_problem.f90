@@ -8,18 +8,19 @@
 module joint_problem
   use archive_type, only: archive
   use equilibrium, only: force_balance
-  use errors, only: error_type
+  use errors, only: error_type, raise
   use hdf5_archive, only: hdf5_store
   use joint_contraction, only: contraction_law
   use joint_law, only: joint_state
   use joint_operator, only: jump_operator
   use joint_points, only: dam_joint
-  use kinds, only: rk
+  use kinds, only: long, rk
   use step_plan, only: step_controls
   use write_text, only: as_text
   implicit none
   private
   public :: saved_operator, saved_problem, save_problem, load_operator, load_problem, free_path
+  public :: triangle_size
 
   !> What several increments have in common.
   type :: saved_operator
@@ -53,6 +54,11 @@ contains
     do j = 1, size(problem%joints)
       if (.not. same_type_as(problem%joints(j)%law, contraction_law())) return
     end do
+    if (triangle_size(size(common%compliance, 1)) > huge(1)) then
+      call raise(error, 'the joints have '//as_text(size(common%compliance, 1))// &
+                 ' rows: the file of a joint problem holds at most 65535')
+      return
+    end if
     call file%create(path)
     call file%open_group('operator')
     call save_operator(common, file)
@@ -80,6 +86,12 @@ contains
     path = ''
   end function free_path
 
+  !> Entries of the lower triangle of a square matrix.
+  pure integer(long) function triangle_size(rows)
+    integer, intent(in) :: rows
+    triangle_size = int(rows, long)*(rows + 1)/2
+  end function triangle_size
+
   !> Writes G as its lower triangle, column by column.
   subroutine save_operator(common, file)
     type(saved_operator), intent(in) :: common
@@ -87,7 +99,7 @@ contains
     real(rk), allocatable :: triangle(:)
     integer :: column, first, m
     m = size(common%compliance, 1)
-    allocate (triangle(m*(m + 1)/2))
+    allocate (triangle(triangle_size(m)))
     first = 1
     do column = 1, m
       triangle(first:first + m - column) = common%compliance(column:, column)

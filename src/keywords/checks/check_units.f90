@@ -1,5 +1,6 @@
 !> Warns of defaults, constants and records in SI in a deck in other units, which the densities or
-!> Young's moduli of its solids show.
+!> Young's moduli of its solids show. The speed of waves sqrt(E/rho) shows the unit of length: the
+!> units of force and mass do not count in it.
 module check_units
   use deck_card, only: card
   use deck_scan, only: is_keyword
@@ -10,12 +11,18 @@ module check_units
   use write_text, only: as_text
   implicit none
   private
-  public :: sign_of_other_units, warn_of_units
+  public :: sign_of_other_units, has_other_length, warn_of_units
 
-  !> Densities of solids in SI lie above, in t/mm3 (1e-9) far below [kg/m3].
-  real(rk), parameter :: lightest_solid = 1.0_rk
+  !> Densities of solids in SI lie above: a tenth of that of water. Concrete has 2.4 in t/m3, 2.4e-3
+  !> in kt/m3 (MN, m, s) and 2.4e-9 in t/mm3 [kg/m3].
+  real(rk), parameter :: lightest_solid = 100.0_rk
   !> Young's moduli of solids in SI lie above, in MPa below [Pa].
   real(rk), parameter :: softest_solid = 1.0e6_rk
+  !> Speeds sqrt(E/rho) in m/s lie below: 3e3 in concrete, 5e3 in steel. Those in mm/s lie above,
+  !> but for solids of less than 30 m/s.
+  real(rk), parameter :: fastest_solid = 3.0e4_rk
+  !> Densities per mm3 lie below (2.4e-6 in kg/mm3), per m3 above (2.4e-3 in kt/m3).
+  real(rk), parameter :: lightest_in_metres = 1.0e-4_rk
   !> Range of g in m/s2 as decks write it.
   real(rk), parameter :: least_g = 9.7_rk, largest_g = 10.1_rk
   !> A SCALE below scales a record, one above turns m/s2 into mm/s2.
@@ -39,20 +46,52 @@ contains
     end if
   end function sign_of_other_units
 
+  !> Whether the unit of length is not the metre. Without a solid that has mass and E the density
+  !> shows it; without any density E in MPa counts as one of millimetres.
+  pure logical function has_other_length(materials)
+    type(material), intent(in) :: materials(:)
+    real(rk) :: slowest, heaviest
+    integer :: i
+    has_other_length = sign_of_other_units(materials) /= ''
+    if (.not. has_other_length) return
+    slowest = huge(1.0_rk)
+    do i = 1, size(materials)
+      if (materials(i)%density <= 0.0_rk .or. materials(i)%young <= 0.0_rk) cycle
+      slowest = min(slowest, sqrt(materials(i)%young/materials(i)%density))
+    end do
+    heaviest = maxval([0.0_rk, materials%density])
+    if (slowest < huge(1.0_rk)) then
+      has_other_length = slowest > fastest_solid
+    else if (heaviest > 0.0_rk) then
+      has_other_length = heaviest < lightest_in_metres
+    end if
+  end function has_other_length
+
   !> The deck must have no errors.
   subroutine warn_of_units(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: why
+    logical :: in_metres
     integer :: i
     why = sign_of_other_units(model%problem%materials)
     if (why == '') return
-    why = ' in a deck with a '//why//', which is not in SI (t, mm, s: water 1e-9, g 9810)'
+    why = ' in a deck with a '//why//', which is not in SI ('
+    in_metres = .not. has_other_length(model%problem%materials)
+    if (in_metres) then
+      why = why//'t, m, s: water 1; kt, m, s: water 1e-3)'
+    else
+      why = why//'t, mm, s: water 1e-9, g 9810)'
+    end if
     do i = 1, size(model%cards)
       associate (this => model%cards(i))
         if (is_keyword(this, 'RESERVOIR')) then
           if (.not. this%has('DENSITY')) call this%warn(faults, 'DENSITY is 1000 by default'//why)
-          if (.not. this%has('GRAVITY')) call this%warn(faults, 'GRAVITY is 9.81 by default'//why)
+          if (.not. (in_metres .or. this%has('GRAVITY'))) then
+            call this%warn(faults, 'GRAVITY is 9.81 by default'//why)
+          end if
+        else if (in_metres) then
+          cycle
         else if (is_keyword(this, 'JOINT LAW')) then
           if (.not. (this%has('THICKNESS') .or. this%has('KN'))) then
             call this%warn(faults, 'THICKNESS, which KN comes from, is 0.02 by default'//why)

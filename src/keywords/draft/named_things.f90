@@ -14,7 +14,7 @@ module named_things
   private
   public :: nodes_at, nodes_in_order_at, elements_at, elements_of_set, nodes_of_set
   public :: find_surface_name, find_surface_at, find_amplitude, find_material
-  public :: joint_names, set_names, surface_names, longest_name
+  public :: joint_names, set_names, surface_names, longest_name, with_article
 
 contains
 
@@ -81,14 +81,12 @@ contains
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
-    character(:), allocatable :: article
     integer :: found
-    article = trim(merge('an', 'a ', kind == 'element'))
     if (this%is_integer_at(line, field)) then
       found = position%find(this%integer_at(line, field))
       if (found == 0) then
         call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
-                           ' does not exist', article//' '//kind//' of the model')
+                           ' does not exist', with_article(kind)//' of the model')
       else if (this%keyword /= 'NSET' .and. this%keyword /= 'ELSET') then
         call warn_of_set(this, line, field, kind, position, sets, faults)
       end if
@@ -137,6 +135,14 @@ contains
       if (found > 0) is_ambiguous = is_another_set(sets, this%word_at(i, field), found)
     end function is_ambiguous
   end subroutine warn_of_set
+
+  !> 'a node', 'an element'.
+  pure function with_article(kind) result(text)
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    character(:), allocatable :: text
+    text = 'a '//kind
+    if (kind == 'element') text = 'an '//kind
+  end function with_article
 
   !> Whether a set of this name holds something else than one member.
   pure logical function is_another_set(sets, name, member)

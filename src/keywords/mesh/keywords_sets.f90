@@ -11,7 +11,8 @@ module keywords_sets
                           kind_word
   use mesh_faces, only: count_corners, face_nodes
   use model_draft, only: draft, origin
-  use named_things, only: elements_at, find_surface_name, nodes_at, nodes_in_order_at
+  use named_things, only: elements_at, find_surface_name, nodes_at, nodes_in_order_at, &
+                          with_article
   use surface_of_faces, only: find_set_faces
   use surface_of_nodes, only: find_faces
   use write_text, only: as_text
@@ -41,6 +42,9 @@ contains
     type(keyword), intent(out) :: spec
     character(*), intent(in) :: name !< 'NSET' or 'ELSET'
     character(*), intent(in) :: kind !< 'node' or 'element'
+    character(:), allocatable :: order
+    order = 'nodes keep the order of the deck where *EQUATION and *MPC pair them'
+    if (kind == 'element') order = 'of Abaqus: elements need no order'
     spec%name = name
     spec%family = 'mesh'
     spec%place = 'model'
@@ -54,11 +58,10 @@ contains
               field('GENERATE', kind_flag, 'each line holds: first, last, step (1)'), &
               field('INSTANCE', kind_word, 'in an *ASSEMBLY: instance of the ids and sets'), &
               field('INTERNAL', kind_flag, 'a set that Abaqus/CAE has named, a set like others'), &
-              field('UNSORTED', kind_flag, 'nodes keep the order of the deck where '// &
-                    '*EQUATION and *MPC pair them; elements need no order')])
+              field('UNSORTED', kind_flag, order)])
     allocate (spec%columns, source=[ &
-              field('member', kind_reference, 'id of a '//kind//' or name of a set, any '// &
-                    'number in a line')])
+              field('member', kind_reference, 'id of '//with_article(kind)//' or name '// &
+                    'of a set, any number in a line')])
   end subroutine describe_set
 
   subroutine read_nset(this, model, faults)
@@ -101,8 +104,7 @@ contains
       do i = 1, this%num_fields(line)
         if (this%is_empty_at(line, i)) then
           call this%fault_at(faults, line, i, 'found an empty field', &
-                             'the id of '//trim(merge('an', 'a ', kind == 'element'))//' '// &
-                             kind//' or the name of a set')
+                             'the id of '//with_article(kind)//' or the name of a set')
           cycle
         end if
         if (kind == 'node' .and. this%has('UNSORTED')) then

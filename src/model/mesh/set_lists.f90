@@ -80,7 +80,7 @@ contains
     if (self%num_sets > 0) sets = self%sets(:self%num_sets)
   end function trimmed
 
-  !> Doubles the list when it is full; members are moved, not copied.
+  !> Doubles the list when it is full; members and their order are moved, not copied.
   pure subroutine double_list(self)
     type(set_list), intent(inout) :: self
     type(named_set), allocatable :: longer(:)
@@ -91,6 +91,7 @@ contains
     do i = 1, self%num_sets
       call move_alloc(self%sets(i)%name, longer(i)%name)
       call move_alloc(self%sets(i)%members, longer(i)%members)
+      call move_alloc(self%sets(i)%in_order, longer(i)%in_order)
     end do
     call move_alloc(longer, self%sets)
   end subroutine double_list

@@ -88,15 +88,16 @@ contains
     end do
   end subroutine energy_of_solids
 
-  !> Elastic energy at the points of one solid: as its law gives it, else from the stress.
+  !> Elastic energy at the points of one solid: as its law gives it, else from the stress. That of
+  !> an absent element stays zero.
   subroutine find_energy(model, plan, now, solid, stress, energy)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     integer, intent(in) :: solid !< position in the plan
     real(rk), intent(in) :: stress(:, :) !< (6, max_points) [Pa]
-    real(rk), intent(inout) :: energy(:) !< (max_points) [J/m3]
-    integer :: q, n, before
+    real(rk), intent(inout) :: energy(:) !< (max_points) zero before [J/m3]
+    integer :: q, n, before, number
     n = plan%num_points(solid)
     if (plan%inelastic_block(solid) > 0) then
       before = plan%points_before(solid)
@@ -104,7 +105,9 @@ contains
                    energy(stored_energy, before + 1:before + n)
       return
     end if
-    associate (own => model%materials(model%mesh%material_of_element(plan%element_of_solid(solid))))
+    number = model%mesh%material_of_element(plan%element_of_solid(solid))
+    if (number == 0) return ! absent
+    associate (own => model%materials(number))
       do q = 1, n
         energy(q) = elastic_energy(own, stress(:, q))
       end do

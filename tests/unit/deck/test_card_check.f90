@@ -38,7 +38,7 @@ contains
     type(keyword), allocatable, intent(out) :: specs(:)
     character(:), allocatable :: types
     allocate (specs(8))
-    specs(1) = keyword(name='ELASTIC', meaning='Linear elasticity. More of it.', &
+    specs(1) = keyword(name='ELASTIC', meaning='Linear elasticity (Eq. 1). More of it.', &
                        family='material', place='material', example='*ELASTIC'//lf//'22e9, 0.2', &
                        fewest_lines=1, most_lines=1, &
                        parameters=[field('TYPE', kind_choice, 'kind of elasticity', &
@@ -262,7 +262,7 @@ contains
     call describe_keyword(specs, '* elastic', text, is_known)
     call check(log, is_known, 'known keyword')
     call check_text(log, text, '*ELASTIC  (in a material)'//lf// &
-                    '  Linear elasticity. More of it.'//lf//lf//'Parameters'//lf// &
+                    '  Linear elasticity (Eq. 1). More of it.'//lf//lf//'Parameters'//lf// &
                     '  TYPE               kind of elasticity; one of ISOTROPIC, ISO; '// &
                     'default ISOTROPIC'//lf//lf//'Data lines: 1'//lf// &
                     "  E                  Young's modulus; a number > 0 [Pa]; required"//lf// &
@@ -273,7 +273,7 @@ contains
     call check_text(log, text, "unknown keyword '*CLOUD'; did you mean '*CLOAD'?", 'its message')
     text = list_keywords(specs)
     call check(log, index(text, 'MATERIAL'//lf//'  *ELASTIC                         '// &
-                          'Linear elasticity'//lf) == 1, 'list')
+                          'Linear elasticity (Eq. 1)'//lf) == 1, 'list')
     call check(log, index(text, 'Checkpoints (not available yet)') > 0, 'remark')
   end subroutine reference_pages
 end program test_card_check

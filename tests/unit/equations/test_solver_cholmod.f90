@@ -124,14 +124,34 @@ contains
     whole(:, 1) = whole(:, 1) + force
     call solver%solve(whole, error)
     call solver%forward_substitute(half, error)
-    call top%add_forces(force, half)
-    call top%solve_for_top(half, x)
+    call top%add_forces(force, half, error)
+    call check(log,.not. allocated(error), 'forces on the top')
+    call top%solve_for_top(half, x, error)
+    call check(log,.not. allocated(error), 'a solve on the top')
     call check_close(log, maxval(abs(x([one, two]) - whole([one, two], 1))), 0.0_rk, 1.0e-12_rk, &
                      'unknowns of the top')
+    call tops_without_memory(top, force, half, x)
     call solver%backward_substitute(half, error)
     call check_close(log, maxval(abs(half - whole(:, 1))), 0.0_rk, 1.0e-12_rk, 'all unknowns')
     call inverses(solver, top, one, two)
   end subroutine tops
+
+  !> Solves on the top that ask for more memory than there is.
+  subroutine tops_without_memory(top, force, half, x)
+    type(top_of_factor), intent(in) :: top
+    real(rk), intent(in) :: force(:), half(:), x(:)
+    type(top_of_factor) :: huge_top
+    type(error_type), allocatable :: error
+    real(rk) :: y(size(x))
+    huge_top = top
+    huge_top%num_free = -1 ! 2^64 bytes
+    y = half
+    call huge_top%add_forces(force, y, error)
+    call check(log, allocated(error), 'no memory for forces on the top')
+    y = x
+    call huge_top%solve_for_top(half, y, error)
+    call check(log, allocated(error), 'no memory for a solve on the top')
+  end subroutine tops_without_memory
 
   !> Entries of the inverse with the unknowns of two groups, against whole solves.
   subroutine inverses(solver, top, one, two)
