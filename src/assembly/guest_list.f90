@@ -83,11 +83,13 @@ contains
   subroutine ties_of(guests, ties)
     type(guest_slot), intent(in) :: guests(:)
     type(node_tie), allocatable, intent(out) :: ties(:)
-    integer :: i
-    allocate (ties(0))
+    integer :: i, used
+    allocate (ties(size(guests)))
+    used = 0
     do i = 1, size(guests)
-      call guests(i)%item%add_ties(ties)
+      call guests(i)%item%add_ties(ties, used)
     end do
+    ties = ties(:used)
   end subroutine ties_of
 
   !> Whether any guest adds to a matrix.
