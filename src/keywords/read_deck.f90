@@ -248,7 +248,7 @@ contains
     type(draft), intent(inout) :: model
     associate (problem => model%problem, surfaces => model%num_surfaces, &
                steps => model%num_steps, amplitudes => model%num_amplitudes)
-      problem%steps = problem%steps(:steps)
+      if (steps < size(problem%steps)) problem%steps = problem%steps(:steps)
       if (surfaces < size(problem%surfaces)) problem%surfaces = problem%surfaces(:surfaces)
       if (amplitudes < size(problem%amplitudes)) problem%amplitudes = &
         problem%amplitudes(:amplitudes)
