@@ -107,6 +107,25 @@ def test_check_lists_what_each_step_inherits(program_path: Path, tmp_path: Path)
     assert [int(x.split()[1]) for x in supports] == [13, 13, 12, 12]
 
 
+def test_prints_of_a_step_replace_those_of_their_kind(program_path: Path, tmp_path: Path) -> None:
+    """The first *NODE PRINT of a step ends those of earlier steps; further ones are added."""
+    base = "*NODE PRINT, NSET=BASE OF IT"
+    steps = [
+        f"*EL PRINT, ELSET=BLOCK\nS\n*NODE PRINT, NSET=ALL\nU\n{base}\nRF",
+        f"{base}, FREQUENCY=3\nU\n*NODE PRINT, NSET=ALL, FREQUENCY=0\nU",
+        "*EL PRINT, ELSET=BLOCK, FREQUENCY=0\nS",
+    ]
+    model = BLOCK[: BLOCK.index("*STEP")]
+    deck = model + "".join(f"*STEP\n*STATIC\n{cards}\n*END STEP\n" for cards in steps)
+    (tmp_path / "block.inp").write_text(deck)
+    lines = steps_of(run(program_path, tmp_path, "--check", "block.inp").stdout).values()
+    assert [[x.split(" ", 1)[1] for x in step if x.startswith("print ")] for step in lines] == [
+        ["ELSET BLOCK: S every 1", "NSET ALL: U every 1", "NSET BASE OF IT: RF every 1"],
+        ["ELSET BLOCK: S every 1", "NSET BASE OF IT: U every 3"],
+        ["NSET BASE OF IT: U every 3"],
+    ]
+
+
 def test_echo_shows_defaults(program_path: Path, tmp_path: Path) -> None:
     (tmp_path / "block.inp").write_text(BLOCK)
     echo = run(program_path, tmp_path, "--check", "block.inp").stdout

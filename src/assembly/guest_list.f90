@@ -83,19 +83,13 @@ contains
   subroutine ties_of(guests, ties)
     type(guest_slot), intent(in) :: guests(:)
     type(node_tie), allocatable, intent(out) :: ties(:)
-    type(node_tie), allocatable :: room(:), own(:) ! a tie is copied once, not with each other one
     integer :: i, used
-    allocate (room(size(guests)))
+    allocate (ties(size(guests)))
     used = 0
     do i = 1, size(guests)
-      allocate (own(0))
-      call guests(i)%item%add_ties(own)
-      if (used + size(own) > size(room)) room = [room, own]
-      room(used + 1:used + size(own)) = own
-      used = used + size(own)
-      deallocate (own)
+      call guests(i)%item%add_ties(ties, used)
     end do
-    ties = room(:used)
+    ties = ties(:used)
   end subroutine ties_of
 
   !> Whether any guest adds to a matrix.

@@ -49,19 +49,18 @@ contains
     type(problem), intent(in) :: model
     type(block_set), intent(out) :: parts
     integer, allocatable :: parent(:)
-    type(node_tie), allocatable :: ties(:)
+    type(node_tie) :: ties(1)
     type(row_table) :: bonds
-    integer :: i
+    integer :: i, used
     allocate (parent(model%mesh%num_nodes), source=0)
     call unite_elements(model, .true., parent)
     do i = 1, size(model%joints)
       call model%joints(i)%add_bonds(bonds)
     end do
     do i = 1, size(model%guests)
-      allocate (ties(0))
-      call model%guests(i)%item%add_ties(ties)
-      if (size(ties) == 0) call model%guests(i)%item%add_bonds(bonds)
-      deallocate (ties)
+      used = 0
+      call model%guests(i)%item%add_ties(ties, used)
+      if (used == 0) call model%guests(i)%item%add_bonds(bonds)
     end do
     call unite_bonds(bonds, parent)
     call number_blocks(model, parent, parts)

@@ -81,11 +81,12 @@ contains
     call self%add_cells(groups)
   end subroutine add_bonds
 
-  !> Appends the relations between displacements that the guest imposes. The numbering eliminates
-  !> them from the unknowns.
-  subroutine add_ties(self, ties)
+  !> Adds the relations between displacements that the guest imposes, in one entry, if any. The
+  !> numbering eliminates them from the unknowns.
+  subroutine add_ties(self, ties, used)
     class(guest), intent(in) :: self
-    type(node_tie), allocatable, intent(inout) :: ties(:)
+    type(node_tie), intent(inout) :: ties(:) !< with room for the entry
+    integer, intent(inout) :: used !< entries in use
   end subroutine add_ties
 
   !> Whether the guest adds to a matrix of the step.

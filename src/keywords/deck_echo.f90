@@ -92,13 +92,14 @@ contains
     type(card), intent(in) :: this
     integer, intent(in) :: line
     character(:), allocatable :: text
+    type(text_buffer) :: fields
     integer :: i, num
     num = this%num_fields(line)
-    text = ''
     do i = 1, num
-      if (i > 1) text = text//', '
-      text = text//this%text_at(line, i)
+      if (i > 1) call fields%add(', ')
+      call fields%add(this%text_at(line, i))
     end do
+    text = fields%contents()
     if (.not. allocated(this%spec%columns) .or. this%spec%repeats_columns) return
     if (this%spec%checks_own_data) return
     do i = num + 1, size(this%spec%columns)

@@ -71,8 +71,9 @@ contains
     if (faults%has_errors() .and. size(model%cards) == 0) return
     if (present(umat)) model%problem%umat => umat
     call match_cards(list, model, keyword_of_card, faults)
+    call make_room_for_names(list, keyword_of_card, model)
     call handle_cards(list, keyword_of_card, model, faults)
-    model%problem%steps = model%problem%steps(:model%num_steps)
+    call trim_lists(model)
     if (model%options%is_for_tests) then
       call complete_tests(model, faults)
     else
@@ -127,14 +128,11 @@ contains
     associate (problem => model%problem)
       problem%deck_file = path
       problem%heading = ''
-      allocate (problem%surfaces(0), problem%amplitudes(0), problem%materials(0), problem%joints(0))
-      allocate (problem%guests(0), problem%covers(0))
+      allocate (problem%joints(0), problem%guests(0), problem%covers(0))
       allocate (problem%loads(0), problem%initial_values(0), problem%tests(0))
       allocate (problem%steps(count([(model%cards(i)%keyword == 'STEP', i=1, size(model%cards))])))
     end associate
-    allocate (model%surface_origin(0), model%material_origin(0), model%test_origin(0))
-    allocate (model%record_unit(0), model%record_factor(0))
-    allocate (model%sections(0), model%laws(0), model%joints(0))
+    allocate (model%test_origin(0), model%laws(0), model%joints(0))
     allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
     allocate (model%interfaces(0), model%interactions(0), model%clearances(0))
   end subroutine open_draft
@@ -215,6 +213,48 @@ contains
                     'a place in a step or above the last *STEP')
     found = 0
   end subroutine check_step_follows
+
+  !> Makes room for surfaces, amplitudes, materials and sections.
+  subroutine make_room_for_names(list, keyword_of_card, model)
+    type(keyword_list), intent(in) :: list
+    integer, intent(in) :: keyword_of_card(:)
+    type(draft), intent(inout) :: model
+    integer :: num
+    associate (problem => model%problem)
+      num = num_cards('SURFACE')
+      allocate (problem%surfaces(num), model%surface_origin(num))
+      num = num_cards('AMPLITUDE')
+      allocate (problem%amplitudes(num), model%record_factor(num), model%record_unit(num))
+      num = num_cards('MATERIAL')
+      allocate (problem%materials(num), model%material_origin(num))
+      allocate (model%sections(num_cards('SOLID SECTION')))
+    end associate
+
+  contains
+
+    !> Number of cards of a keyword.
+    pure integer function num_cards(name)
+      character(*), intent(in) :: name
+      integer :: i
+      num_cards = 0
+      do i = 1, size(keyword_of_card)
+        if (keyword_of_card(i) == 0) cycle
+        if (list%specs(keyword_of_card(i))%name == name) num_cards = num_cards + 1
+      end do
+    end function num_cards
+  end subroutine make_room_for_names
+
+  !> Removes the room of cards with faults. Whole lists stay: cutting copies them.
+  subroutine trim_lists(model)
+    type(draft), intent(inout) :: model
+    associate (problem => model%problem, surfaces => model%num_surfaces, &
+               steps => model%num_steps, amplitudes => model%num_amplitudes)
+      if (steps < size(problem%steps)) problem%steps = problem%steps(:steps)
+      if (surfaces < size(problem%surfaces)) problem%surfaces = problem%surfaces(:surfaces)
+      if (amplitudes < size(problem%amplitudes)) problem%amplitudes = &
+        problem%amplitudes(:amplitudes)
+    end associate
+  end subroutine trim_lists
 
   !> Checks and handles the cards pass by pass.
   subroutine handle_cards(list, keyword_of_card, model, faults)

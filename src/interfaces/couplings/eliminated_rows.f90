@@ -29,9 +29,11 @@ contains
     end associate
   end subroutine add_bonds
 
-  subroutine add_ties(self, ties)
+  subroutine add_ties(self, ties, used)
     class(row_guest), intent(in) :: self
-    type(node_tie), allocatable, intent(inout) :: ties(:)
-    ties = [ties, self%rows]
+    type(node_tie), intent(inout) :: ties(:)
+    integer, intent(inout) :: used !< relations in use
+    used = used + 1
+    ties(used) = self%rows
   end subroutine add_ties
 end module eliminated_rows

@@ -1,12 +1,17 @@
 !> Warns of values of a step that are given twice, and says which of them acts.
 module check_repeats
   use deck_card, only: card
-  use deck_scan, only: is_keyword, steps_of_cards
+  use deck_scan, only: steps_of_cards
   use diagnostics, only: diagnostic_list
   use model_draft, only: draft
+  use text_buffers, only: text_buffer
+  use text_table, only: text_numbers
+  use write_text, only: as_text
   implicit none
   private
   public :: warn_of_repeats
+
+  character, parameter :: nl = new_line('a')
 
 contains
 
@@ -14,25 +19,78 @@ contains
   subroutine warn_of_repeats(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(text_numbers) :: keys
+    character(:), allocatable :: key
     integer :: step(size(model%cards))
-    integer :: i, j
+    integer :: before(size(step)), last(size(step)) !< cards of one key, 0 for none
+    integer :: i, j, k
     step = steps_of_cards(model%cards)
+    last = 0
     do i = 1, size(step)
       if (step(i) == 0) cycle
-      do j = i - 1, 1, -1
-        if (step(j) /= step(i)) exit
+      key = key_of(model%cards(i))
+      if (len(key) == 0) cycle
+      call keys%find_or_add(as_text(step(i))//key, k)
+      before(i) = last(k)
+      last(k) = i
+      j = before(i)
+      do while (j > 0)
         if (compare(model%cards(j), model%cards(i), faults)) exit
+        j = before(j)
       end do
     end do
   end subroutine warn_of_repeats
+
+  !> What cards have in common of which one may repeat the other; '' for cards without repeats.
+  function key_of(this) result(key)
+    type(card), intent(in) :: this
+    character(:), allocatable :: key
+    key = ''
+    if (.not. allocated(this%spec%name)) return
+    select case (this%spec%name)
+    case ('CONTROLS', 'DAMPING', 'RESTART')
+      key = nl//this%spec%name
+    case ('BASE MOTION')
+      key = nl//this%spec%name//nl//as_text(this%integer('DOF'))
+    case ('RESERVOIR')
+      key = nl//this%spec%name//nl//this%word('SURFACE')
+    case ('CLOAD', 'DLOAD', 'DSLOAD')
+      key = load_key(this)
+    case default
+      continue ! the keyword has no second value, or a warning of its own
+    end select
+  end function key_of
+
+  !> Parameters and data of a card of loads, '' without data and for weight: weight that acts twice
+  !> has a warning of its own.
+  function load_key(this) result(key)
+    type(card), intent(in) :: this
+    character(:), allocatable :: key
+    type(text_buffer) :: words
+    integer :: i, j
+    key = ''
+    if (this%num_lines == 0) return
+    call words%add(nl//this%spec%name)
+    do i = 1, size(this%spec%parameters)
+      associate (name => this%spec%parameters(i)%name)
+        if (this%has(name)) call words%add(nl//name//'='//this%word(name))
+      end associate
+    end do
+    do i = 1, this%num_lines
+      call words%add(nl)
+      do j = 1, this%num_fields(i)
+        if (this%word_at(i, j) == 'GRAV') return
+        call words%add(','//this%word_at(i, j))
+      end do
+    end do
+    key = words%contents()
+  end function load_key
 
   !> Warns where a card repeats an earlier one of its step; whether it does.
   logical function compare(old, new, faults) result(is_repeat)
     type(card), intent(in) :: old, new
     type(diagnostic_list), intent(inout) :: faults
-    is_repeat = .false.
-    if (.not. (allocated(old%spec%name) .and. allocated(new%spec%name))) return
-    if (old%spec%name /= new%spec%name) return
+    is_repeat = .true.
     select case (new%spec%name)
     case ('CONTROLS')
       call compare_controls(old, new, faults, is_repeat)
@@ -41,47 +99,19 @@ contains
       if (is_repeat) call new%warn(faults, 'a *DAMPING of this kind is given in this step '// &
                                    'already: the last one acts')
     case ('BASE MOTION')
-      is_repeat = old%integer('DOF') == new%integer('DOF')
-      if (is_repeat) call new%warn(faults, 'the base moves in direction '//new%word('DOF')// &
-                                   ' in this step already: both motions add up')
+      call new%warn(faults, 'the base moves in direction '//new%word('DOF')// &
+                    ' in this step already: both motions add up')
     case ('RESTART')
-      is_repeat = .true.
       call new%warn(faults, 'a *RESTART is given in this step already: the last one acts')
     case ('RESERVOIR')
-      is_repeat = old%word('NAME') /= new%word('NAME') .and. &
-                  old%word('SURFACE') == new%word('SURFACE')
+      is_repeat = old%word('NAME') /= new%word('NAME')
       if (is_repeat) call new%warn(faults, "reservoir '"//old%text('NAME')//"' wets the "// &
                                    'surface in this step already: the water of both acts')
-    case ('CLOAD', 'DLOAD', 'DSLOAD')
-      is_repeat = are_equal(old, new)
-      if (is_repeat) call new%warn(faults, 'the card stands in this step already, word for '// &
-                                   'word: its loads act twice')
-    case default
-      continue ! the keyword has no second value, or a warning of its own
+    case default ! loads
+      call new%warn(faults, 'the card stands in this step already, word for '// &
+                    'word: its loads act twice')
     end select
   end function compare
-
-  !> Whether two cards of loads have the same parameters and data. Weight that acts twice has a
-  !> warning of its own.
-  logical function are_equal(old, new)
-    type(card), intent(in) :: old, new
-    integer :: i, j
-    are_equal = size(old%parameters) == size(new%parameters) &
-                .and. old%num_lines == new%num_lines .and. new%num_lines > 0
-    do i = 1, size(new%parameters)
-      associate (name => new%parameters(i)%name)
-        if (are_equal) are_equal = old%has(name)
-        if (are_equal) are_equal = old%word(name) == new%word(name)
-      end associate
-    end do
-    do i = 1, new%num_lines
-      if (are_equal) are_equal = old%num_fields(i) == new%num_fields(i)
-      do j = 1, new%num_fields(i)
-        if (.not. are_equal) return
-        are_equal = old%word_at(i, j) == new%word_at(i, j) .and. new%word_at(i, j) /= 'GRAV'
-      end do
-    end do
-  end function are_equal
 
   subroutine compare_controls(old, new, faults, is_repeat)
     type(card), intent(in) :: old, new

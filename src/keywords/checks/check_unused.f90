@@ -47,12 +47,11 @@ contains
     logical :: is_used(size(model%problem%materials))
     integer :: i, s
     is_used = .false.
+    do s = 1, size(model%sections)
+      is_used(model%material_of_name%find(model%sections(s)%material)) = .true.
+    end do
     do i = 1, size(is_used)
-      do s = 1, size(model%sections)
-        is_used(i) = is_used(i) .or. model%sections(s)%material == model%problem%materials(i)%name
-      end do
-      is_used(i) = is_used(i) .or. any(model%problem%tests%material == i)
-      if (is_used(i)) cycle
+      if (is_used(i) .or. any(model%problem%tests%material == i)) cycle
       associate (place => model%cards(model%material_origin(i)%card))
         call place%warn(faults, "nothing uses material '"//place%text('NAME')//"'")
       end associate

@@ -18,6 +18,7 @@ module model_draft
   use problem_definition, only: problem
   use set_lists, only: set_list
   use step_plan, only: output_rhythm, step
+  use text_table, only: text_numbers
   use print_kinds, only: kinds_of_prints
   implicit none
   private
@@ -122,12 +123,16 @@ module model_draft
     type(set_list) :: node_sets, element_sets
     type(mesh_instance) :: outside !< what stands outside the instances of parts
     type(face_element_list) :: faces !< elements of faces beside the solids
+    ! In use of `problem` while the deck is read; the lists have room for all cards.
+    integer :: num_surfaces = 0, num_amplitudes = 0, num_materials = 0
+    type(text_numbers) :: surface_of_name, amplitude_of_name, material_of_name !< positions
     type(origin), allocatable :: surface_origin(:), material_origin(:), test_origin(:)
     character(5), allocatable :: record_unit(:) !< (amplitudes) UNIT, '' for none
     real(rk), allocatable :: record_factor(:) !< (amplitudes) of a unit that only the file names
     logical :: is_from_cae = .false. !< a comment names Abaqus/CAE
     logical, allocatable :: has_element(:) !< (nodes) an element has the node
     type(reading_options) :: options !< of the command line
+    integer :: num_sections = 0 !< in use of `sections`, which has room for all cards
     type(section_request), allocatable :: sections(:)
     type(law_request), allocatable :: laws(:)
     type(joint_request), allocatable :: joints(:)
@@ -204,7 +209,7 @@ contains
     integer, intent(out) :: found
     type(request_slot), allocatable :: longer(:)
     integer :: material, num, i
-    material = size(model%problem%materials)
+    material = model%num_materials
     num = size(model%material_requests)
     do found = 1, num
       associate (item => model%material_requests(found)%item)

@@ -211,11 +211,7 @@ contains
   pure integer function find_surface_name(model, name) result(found)
     type(draft), intent(in) :: model
     character(*), intent(in) :: name !< upper case
-    integer :: i
-    found = 0
-    do i = 1, size(model%problem%surfaces)
-      if (model%problem%surfaces(i)%name == name) found = i
-    end do
+    found = model%surface_of_name%find(name)
   end function find_surface_name
 
   !> Position of the surface named in a field, by default the first; 0 after a fault.
@@ -239,7 +235,7 @@ contains
   !> Names of surfaces.
   pure function surface_names(model) result(names)
     type(draft), intent(in) :: model
-    character(longest_name) :: names(size(model%problem%surfaces))
+    character(longest_name) :: names(model%num_surfaces)
     integer :: i
     do i = 1, size(names)
       names(i) = model%problem%surfaces(i)%name
@@ -252,19 +248,18 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(longest_name) :: known(size(model%problem%amplitudes))
+    character(longest_name) :: known(model%num_amplitudes)
     integer :: i
     found = 0
     if (.not. this%has('AMPLITUDE')) return
-    do i = 1, size(model%problem%amplitudes)
-      if (model%problem%amplitudes(i)%name == this%word('AMPLITUDE')) found = i
+    found = model%amplitude_of_name%find(this%word('AMPLITUDE'))
+    if (found > 0) return
+    do i = 1, size(known)
       known(i) = model%problem%amplitudes(i)%name
     end do
-    if (found == 0) then
-      call this%fault_parameter(faults, 'AMPLITUDE', "there is no amplitude '"// &
-                                this%text('AMPLITUDE')//"'", 'the name of an *AMPLITUDE', &
-                                nearest_word(this%word('AMPLITUDE'), known))
-    end if
+    call this%fault_parameter(faults, 'AMPLITUDE', "there is no amplitude '"// &
+                              this%text('AMPLITUDE')//"'", 'the name of an *AMPLITUDE', &
+                              nearest_word(this%word('AMPLITUDE'), known))
   end subroutine find_amplitude
 
   !> Position of the material that MATERIAL names; 0 after a fault.
@@ -273,14 +268,13 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(longest_name) :: known(size(model%problem%materials))
+    character(longest_name) :: known(model%num_materials)
     integer :: i
-    found = 0
+    found = model%material_of_name%find(this%word('MATERIAL'))
+    if (found > 0) return
     do i = 1, size(known)
       known(i) = model%problem%materials(i)%name
-      if (model%problem%materials(i)%name == this%word('MATERIAL')) found = i
     end do
-    if (found > 0) return
     call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
                               this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
                               nearest_word(this%word('MATERIAL'), known))

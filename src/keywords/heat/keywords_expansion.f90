@@ -44,7 +44,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(expansion_table) :: table
     integer :: line
-    associate (now => model%problem%materials(size(model%problem%materials)))
+    associate (now => model%problem%materials(model%num_materials))
       if (allocated(now%expansion)) then
         call this%fault(faults, "material '"//now%name//"' has an *EXPANSION already", 'one only')
         return

@@ -38,20 +38,20 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     logical, allocatable :: is_fixed(:, :), is_always(:, :)
-    type(node_tie), allocatable :: adjusting(:), ties(:)
-    integer :: i, num_before
+    type(node_tie), allocatable :: ties(:)
+    integer, allocatable :: adjusting(:)
+    integer :: i, k, num_before
     if (size(model%ties) == 0) return
-    allocate (adjusting(0))
-    num_before = 0
+    allocate (adjusting(0), ties(0))
     call collect_supports(model, is_fixed, is_always)
     do i = 1, size(model%ties)
-      call build_tie(model%ties(i), is_fixed, is_always, model, faults)
+      num_before = size(ties)
+      call build_tie(model%ties(i), is_fixed, is_always, ties, model, faults)
       if (faults%has_errors()) return
       call ties_of(model%problem%guests, ties)
-      if (model%ties(i)%adjusts) adjusting = [adjusting, ties(num_before + 1:)]
-      num_before = size(ties)
+      if (model%ties(i)%adjusts) adjusting = [adjusting, (k, k=num_before + 1, size(ties))]
     end do
-    call adjust_nodes(adjusting, model, faults)
+    call adjust_nodes(ties(adjusting), model, faults)
     call check_initial_values(.false., model, faults)
     if (.not. faults%has_errors()) call check_initial_values(.true., model, faults)
   end subroutine complete_ties
@@ -92,9 +92,10 @@ contains
   end subroutine collect_supports
 
   !> Builds the tie of one pair of surfaces.
-  subroutine build_tie(request, is_fixed, is_always, model, faults)
+  subroutine build_tie(request, is_fixed, is_always, earlier, model, faults)
     type(tie_request), intent(in) :: request
     logical, intent(in) :: is_fixed(:, :), is_always(:, :) !< (3, nodes) by supports
+    type(node_tie), intent(in) :: earlier(:) !< of the requests before
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(facet_set) :: slave, master
@@ -102,7 +103,6 @@ contains
     type(surface_cover) :: cover
     class(guest), allocatable :: item
     type(exact_tie) :: tie
-    type(node_tie), allocatable :: earlier(:)
     type(coupling), allocatable :: springs
     logical, allocatable :: is_idle(:, :)
     associate (problem => model%problem, place => model%cards(request%spot%card))
@@ -130,7 +130,6 @@ contains
       tie%name = request%name
       tie%kind = 'tie'
       tie%rows%name = request%name
-      call ties_of(problem%guests, earlier)
       call build_tie_rows(problem%mesh%x, slave, master, segments, is_fixed, earlier, tie%rows, &
                           is_idle)
       if (size(tie%rows%node) == 0) then

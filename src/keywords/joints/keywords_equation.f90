@@ -97,7 +97,11 @@ contains
     if (this%is_integer_at(line, 1) .and. this%num_fields(line) == 1) then
       num_terms = this%integer_at(line, 1)
     end if
-    num_fields = sum([(this%num_fields(k), k=line + 1, this%num_lines)])
+    num_fields = 0
+    do k = line + 1, this%num_lines
+      if (num_fields/3 >= num_terms) exit
+      num_fields = num_fields + this%num_fields(k)
+    end do
     if (num_terms < 2) then
       num_terms = 0
       call this%fault_at(faults, line, 1, "found '"//this%text_at(line, 1)//"'", &

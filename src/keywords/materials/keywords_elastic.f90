@@ -44,7 +44,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%problem%materials(size(model%problem%materials)))
+    associate (now => model%problem%materials(model%num_materials))
       if (allocated(now%law)) then
         call this%fault(faults, "material '"//now%name//"' has an *ELASTIC already", 'one only')
         return

@@ -4,8 +4,8 @@ module keywords_material
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
   use kinds, only: rk
-  use material_law, only: material
   use model_draft, only: draft, origin
+  use write_text, only: as_text
   implicit none
   private
   public :: describe_material, describe_density, describe_material_damping
@@ -33,22 +33,20 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(material), allocatable :: longer(:)
-    integer :: i, num
-    num = size(model%problem%materials)
-    do i = 1, num
-      if (model%problem%materials(i)%name /= this%word('NAME')) cycle
+    character(:), allocatable :: name
+    integer :: earlier
+    name = this%word('NAME')
+    model%num_materials = model%num_materials + 1
+    model%problem%materials(model%num_materials)%name = name
+    model%material_origin(model%num_materials) = model%here(0)
+    earlier = model%material_of_name%find(name)
+    if (earlier > 0) then
       call this%fault_parameter(faults, 'NAME', "material '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once', &
-                                first=model%cards(model%material_origin(i)%card)%place())
-    end do
-    allocate (longer(num + 1))
-    do i = 1, num
-      longer(i) = model%problem%materials(i)
-    end do
-    longer(num + 1)%name = this%word('NAME')
-    call move_alloc(longer, model%problem%materials)
-    model%material_origin = [model%material_origin, model%here(0)]
+                                first=model%cards(model%material_origin(earlier)%card)%place())
+      name = name//nl//as_text(model%num_materials) ! the table numbers all materials
+    end if
+    call model%material_of_name%find_or_add(name, earlier)
   end subroutine read_material
 
   subroutine describe_density(spec)
@@ -70,7 +68,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%problem%materials(size(model%problem%materials)))
+    associate (now => model%problem%materials(model%num_materials))
       if (now%density > 0.0_rk) then
         call this%fault(faults, "material '"//now%name//"' has a *DENSITY already", 'one only')
       end if
@@ -105,7 +103,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    associate (now => model%problem%materials(size(model%problem%materials)))
+    associate (now => model%problem%materials(model%num_materials))
       if (now%alpha > 0.0_rk .or. now%beta > 0.0_rk) then
         call this%fault(faults, "material '"//now%name//"' has a *DAMPING already", 'one only')
       end if
@@ -122,7 +120,7 @@ contains
     type(origin), intent(inout) :: spot !< of the keyword in its material
     type(diagnostic_list), intent(inout) :: faults
     if (spot%card > 0) then
-      associate (now => model%problem%materials(size(model%problem%materials)))
+      associate (now => model%problem%materials(model%num_materials))
         call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
                         'one only', first=model%cards(spot%card)%place())
       end associate

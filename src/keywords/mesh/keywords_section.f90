@@ -52,7 +52,8 @@ contains
     end if
     new%material = this%word('MATERIAL')
     new%spot = model%here(0)
-    model%sections = [model%sections, new]
+    model%num_sections = model%num_sections + 1
+    model%sections(model%num_sections) = new
     call give_material(this, new%elements, num_material, model, faults)
   end subroutine read_solid_section
 
@@ -94,7 +95,7 @@ contains
                                     first=model%cards(model%sections(earlier)%spot%card)%place())
           return
         end if
-        mesh%section_of_element(e) = size(model%sections)
+        mesh%section_of_element(e) = model%num_sections
         mesh%material_of_element(e) = num_material
       end do
     end associate

@@ -11,8 +11,7 @@ module keywords_sets
                           kind_word
   use mesh_faces, only: count_corners, face_nodes
   use model_draft, only: draft, origin
-  use named_things, only: elements_at, find_surface_name, nodes_at, nodes_in_order_at, &
-                          with_article
+  use named_things, only: elements_at, nodes_at, nodes_in_order_at, with_article
   use surface_of_faces, only: find_set_faces
   use surface_of_nodes, only: find_faces
   use write_text, only: as_text
@@ -194,7 +193,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(surface) :: new
     integer :: earlier
-    earlier = find_surface_name(model, this%word('NAME'))
+    earlier = model%surface_of_name%find(this%word('NAME'))
     if (earlier > 0) then
       call this%fault_parameter(faults, 'NAME', "surface '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once', &
@@ -210,8 +209,9 @@ contains
     case default
       call list_faces(this, model, faults, new)
     end select
-    model%problem%surfaces = [model%problem%surfaces, new]
-    model%surface_origin = [model%surface_origin, model%here(0)]
+    call model%surface_of_name%find_or_add(new%name, model%num_surfaces)
+    model%problem%surfaces(model%num_surfaces) = new
+    model%surface_origin(model%num_surfaces) = model%here(0)
   end subroutine read_surface
 
   !> The faces of a card with elements and faces.

@@ -128,9 +128,9 @@ contains
     found = 0
     if (this%has('MATERIAL')) then
       call find_material(this, model, faults, found)
-    else if (size(model%problem%materials) == 1) then
+    else if (model%num_materials == 1) then
       found = 1
-    else if (size(model%problem%materials) == 0) then
+    else if (model%num_materials == 0) then
       call this%fault(faults, 'the deck has no material', '*MATERIAL and its properties')
     else
       call this%fault(faults, 'the deck has several materials', 'MATERIAL=<name of one>')

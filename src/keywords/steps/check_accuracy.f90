@@ -86,13 +86,15 @@ contains
   pure real(rk) function shortest_sample(model) result(shortest)
     type(draft), intent(in) :: model
     type(step_load), allocatable :: loads(:)
+    logical :: is_used(model%num_amplitudes)
     integer :: i, n
     shortest = 0.5_rk*huge(1.0_rk) ! the caller adds round-off
     loads = model%active_loads%loads_of_step()
-    do i = 1, size(model%problem%amplitudes)
+    is_used = model%supports%follows(size(is_used)) .or. model%point_forces%follows(size(is_used))
+    is_used(pack(loads%amplitude, loads%amplitude > 0)) = .true.
+    do i = 1, size(is_used)
+      if (.not. is_used(i)) cycle
       associate (time => model%problem%amplitudes(i)%time)
-        if (.not. (any(loads%amplitude == i) .or. any(model%supports%history == i) &
-                   .or. any(model%point_forces%history == i))) cycle
         n = size(time)
         if (n > 2) shortest = min(shortest, 0.5_rk*minval(time(3:) - time(:n - 2)))
       end associate

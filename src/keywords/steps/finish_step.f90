@@ -116,6 +116,7 @@ contains
   subroutine collect_point_forces(model)
     type(draft), intent(inout) :: model
     real(rk), allocatable :: force(:, :), previous(:, :)
+    logical :: has_forces(model%num_amplitudes)
     integer :: history
     allocate (model%now%loads(0))
     associate (table => model%point_forces)
@@ -129,8 +130,9 @@ contains
         call add_forces(model, force, 0.0_rk, 1.0_rk, 0)
       end if
     end associate
-    do history = 1, size(model%problem%amplitudes)
-      if (.not. any(model%point_forces%history == history)) cycle
+    has_forces = model%point_forces%follows(model%num_amplitudes)
+    do history = 1, size(has_forces)
+      if (.not. has_forces(history)) cycle
       force = merge(model%point_forces%value, 0.0_rk, model%point_forces%history == history)
       call add_forces(model, force, 0.0_rk, 1.0_rk, history)
     end do

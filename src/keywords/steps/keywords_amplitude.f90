@@ -65,15 +65,15 @@ contains
     type(amplitude) :: new
     type(number_file) :: numbers
     real(rk) :: own_factor
-    integer :: i, num_before
+    integer :: earlier, num_before
     num_before = faults%num_errors
     new%name = this%word('NAME')
     new%uses_total_time = this%word('TIME') == 'TOTAL TIME'
-    do i = 1, size(model%problem%amplitudes)
-      if (model%problem%amplitudes(i)%name /= new%name) cycle
+    earlier = model%amplitude_of_name%find(new%name)
+    if (earlier > 0) then
       call this%fault_parameter(faults, 'NAME', "amplitude '"//this%text('NAME')// &
                                 "' is defined twice", 'a name that is used once')
-    end do
+    end if
     call collect_numbers(this, faults, numbers)
     own_factor = 1.0_rk
     if (faults%num_errors == num_before) then
@@ -84,9 +84,11 @@ contains
     end if
     if (.not. allocated(new%time)) new%time = [0.0_rk] ! the name exists, its faults are reported
     if (.not. allocated(new%value)) new%value = [0.0_rk]
-    model%problem%amplitudes = [model%problem%amplitudes, new]
-    model%record_factor = [model%record_factor, own_factor]
-    model%record_unit = [character(len(model%record_unit)) :: model%record_unit, this%word('UNIT')]
+    if (earlier > 0) return
+    call model%amplitude_of_name%find_or_add(new%name, model%num_amplitudes)
+    model%problem%amplitudes(model%num_amplitudes) = new
+    model%record_factor(model%num_amplitudes) = own_factor
+    model%record_unit(model%num_amplitudes) = this%word('UNIT')
   end subroutine read_amplitude
 
   !> The numbers of the card or of its file.

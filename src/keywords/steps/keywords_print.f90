@@ -221,14 +221,22 @@ contains
     type(print_request), intent(in) :: new
     type(draft), intent(inout) :: model
     type(print_request), allocatable :: kept(:)
-    integer :: i
-    allocate (kept(0))
-    do i = 1, size(model%now%prints)
-      if (model%now%prints(i)%kind == new%kind .and. .not. model%prints_given(new%kind)) cycle
-      kept = [kept, model%now%prints(i)]
-    end do
-    if (new%frequency > 0) kept = [kept, new]
-    call move_alloc(kept, model%now%prints)
+    integer, allocatable :: members(:)
+    logical :: stays(size(model%now%prints))
+    integer :: i, used
+    stays = model%prints_given(new%kind) .or. model%now%prints%kind /= new%kind
     model%prints_given(new%kind) = .true.
+    if (all(stays) .and. new%frequency == 0) return
+    allocate (kept(count(stays) + merge(1, 0, new%frequency > 0)))
+    used = 0
+    do i = 1, size(stays)
+      if (.not. stays(i)) cycle
+      used = used + 1
+      call move_alloc(model%now%prints(i)%members, members) ! long lists are moved, not copied
+      kept(used) = model%now%prints(i)
+      call move_alloc(members, kept(used)%members)
+    end do
+    if (new%frequency > 0) kept(size(kept)) = new
+    call move_alloc(kept, model%now%prints)
   end subroutine add_request
 end module keywords_print

@@ -20,6 +20,7 @@ module dof_tables
     procedure :: put => set_value
     procedure :: add => add_value
     procedure :: clear_old
+    procedure :: follows
     procedure :: end_step
   end type dof_table
 
@@ -80,6 +81,20 @@ contains
       self%history = 0
     end where
   end subroutine clear_old
+
+  !> Which amplitudes scale a value.
+  pure function follows(self, num_histories) result(is_followed)
+    class(dof_table), intent(in) :: self
+    integer, intent(in) :: num_histories
+    logical :: is_followed(num_histories)
+    integer :: node, dof
+    is_followed = .false.
+    do node = 1, size(self%history, 2)
+      do dof = 1, num_directions
+        if (self%history(dof, node) > 0) is_followed(self%history(dof, node)) = .true.
+      end do
+    end do
+  end function follows
 
   !> Ends a step: values that followed an amplitude over step time stay constant from now on.
   pure subroutine end_step(self, histories, step_time, total_time, is_perturbation)
