@@ -9,6 +9,7 @@ set(sources
   facets/facet_search.f90
   facets/facet_segments.f90
   facets/segment_quadrature.f90
+  facets/segment_quarters.f90
   facets/surface_facets.f90
   facets/surface_segments.f90
   mortar/mortar_balance.f90

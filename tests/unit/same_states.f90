@@ -299,6 +299,7 @@ contains
     call compare(log, what//'water', a%water, b%water)
     call compare(log, what//'origin', a%origin, b%origin)
     call compare(log, what//'phase', a%phase, b%phase)
+    call compare(log, what//'is_pressed', a%is_pressed, b%is_pressed)
     call compare(log, what//'part_origin', a%part_origin, b%part_origin)
   end subroutine compare_joint
 

@@ -126,6 +126,24 @@ def test_pressure_of_the_grout_stays_when_it_hardens(keyway, facets):
     assert max(e["error"] for e in energy[1:3]) < 1e-10
 
 
+def test_grout_is_not_where_the_joint_breaks_later_in_its_step(keyway):
+    """The intact joint breaks while the grout is under pressure: it stays open, nothing moves."""
+    rise = STRENGTH * COMPLIANCE
+    run = keyway(
+        bar(BONDED)
+        + move(0.0, "*GROUT, JOINT=J\n")
+        + move(2.0 * rise, "*GROUT, JOINT=J, PRESSURE=1e5\n")
+        + move(2.0 * rise)
+        + move(2.0 * rise, "*GROUT, JOINT=J\n")
+    )
+    assert (ends_of_steps(run, "state").T == [INTACT, OPEN, OPEN, INTACT]).all()
+    # Round-off of the forces that the pull has had: 1e-9 of the strength.
+    assert np.abs(ends_of_steps(run, "tn")).max() < 1e-9 * STRENGTH
+    opening = ends_of_steps(run, "opening")
+    assert opening[1:3] == pytest.approx(2.0 * rise, rel=1e-9)
+    assert max(s["energy"]["error"] for s in run.json["steps"]) < 1e-10
+
+
 def test_grout_hardens_before_a_step_of_modes(keyway):
     """Its energy stands in the step after the modes: p^2 A / (2 k_n), as without them."""
     p = 2e5

@@ -15,7 +15,7 @@ module stage_entry
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
-  use stage_joints, only: harden_joints, harden_pressed, move_points, start_phases
+  use stage_joints, only: fill_joints, harden_pressed, move_points, start_phases
   use tie_motion, only: follow_ties
   use warming, only: heat_points, take_references
   implicit none
@@ -33,13 +33,12 @@ contains
     if (.not. model%stages%is_there_any()) return
     if (number == 1) call start_phases(model, now%joints)
     if (number > 1) call show_stage(model, number - 1) ! where a loaded state goes on
-    if (.not. model%steps(number)%changes_stage) return
     if (number > 1) call harden_pressed(model, model%steps(number - 1), now%joints)
     if (model%stages%changes_elements(number)) then
       call move_elements(model, number, now, error)
       if (allocated(error)) return
     end if
-    call harden_joints(model, model%steps(number), now%joints)
+    call fill_joints(model, model%steps(number), now%joints)
   end subroutine enter_stage
 
   !> Sets the elements of the mesh and the parts of joints to those of a step.

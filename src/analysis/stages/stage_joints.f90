@@ -11,7 +11,7 @@ module stage_joints
   use step_plan, only: step
   implicit none
   private
-  public :: start_phases, move_points, harden_joints, harden_pressed
+  public :: start_phases, move_points, fill_joints, harden_pressed
 
 contains
 
@@ -200,8 +200,9 @@ contains
     own%internal(:, p) = fresh%internal(:, p)
   end subroutine renew_point
 
-  !> Grout without pressure hardens at the start of its step.
-  subroutine harden_joints(model, plan, joints)
+  !> Grout at the start of its step fills the points that are not intact then. Without pressure it
+  !> hardens at once.
+  subroutine fill_joints(model, plan, joints)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
     type(joint_state), intent(inout) :: joints(:)
@@ -209,13 +210,19 @@ contains
     if (.not. allocated(plan%grouts)) return
     do g = 1, size(plan%grouts)
       associate (grout => plan%grouts(g))
-        if (grout%pressure > 0.0_rk) cycle
-        call harden(model%joints(grout%joint), 0.0_rk, joints(grout%joint))
+        associate (own => joints(grout%joint))
+          if (grout%pressure > 0.0_rk) then
+            own%is_pressed = takes_grout(own)
+          else
+            call harden(model%joints(grout%joint), 0.0_rk, takes_grout(own), own)
+          end if
+        end associate
       end associate
     end do
-  end subroutine harden_joints
+  end subroutine fill_joints
 
-  !> Grout with pressure hardens at the end of its step.
+  !> Grout with pressure hardens at the end of its step, in the points that it has filled: those
+  !> that broke later hold none.
   subroutine harden_pressed(model, plan, joints)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan !< the step before
@@ -225,7 +232,10 @@ contains
     do g = 1, size(plan%grouts)
       associate (grout => plan%grouts(g))
         if (grout%pressure <= 0.0_rk) cycle
-        call harden(model%joints(grout%joint), grout%pressure, joints(grout%joint))
+        associate (own => joints(grout%joint))
+          call harden(model%joints(grout%joint), grout%pressure, own%is_pressed, own)
+          deallocate (own%is_pressed)
+        end associate
       end associate
     end do
   end subroutine harden_pressed
@@ -233,15 +243,14 @@ contains
   !> The zero of the law moves so that the springs of the law carry what faces and grout carry now:
   !> an open point without pressure has its zero where it is. Contact without penetration carries
   !> the pressure by its multiplier.
-  subroutine harden(joint, pressure, own)
+  subroutine harden(joint, pressure, takes, own)
     type(dam_joint), intent(in) :: joint
     real(rk), intent(in) :: pressure !< of the grout [Pa]
+    logical, intent(in) :: takes(:) !< (points) hold grout
     type(joint_state), intent(inout) :: own
     type(joint_state) :: old, fresh
     real(rk) :: tangent(3, 3, joint%num_points), jump(3, joint%num_points), k(3)
-    logical :: takes(joint%num_points)
     integer :: p
-    takes = takes_grout(own)
     call joint%law%start_state(spread(-joint%law%gap, 1, joint%num_points), old)
     old%phase = own%phase
     where (takes) old%phase = phase_full

@@ -5,7 +5,7 @@
 !> the end of the previous increment.
 module joint_water
   use kinds, only: rk
-  use joint_law, only: joint_state, state_open, takes_grout
+  use joint_law, only: joint_state, state_open
   use joint_operator, only: jump_operator
   use problem_definition, only: problem
   use step_loads, only: load_group, step_time, factor_at
@@ -62,7 +62,7 @@ contains
         if (grout%pressure <= 0.0_rk) cycle
         fresh%force = spread(0.0_rk, 1, num_unknowns)
         call push_faces(operator, grout%joint, &
-                        merge(grout%pressure, 0.0_rk, takes_grout(states(grout%joint))), &
+                        merge(grout%pressure, 0.0_rk, states(grout%joint)%is_pressed), &
                         fresh%force)
         groups = [groups, fresh]
       end associate

@@ -11,20 +11,13 @@ module coupling_joint
   use mortar_facet, only: facet_extent
   use mortar_projection, only: project
   use mortar_balance, only: mortar_rows
-  use segment_quadrature, only: integrate_segment, segment_points
+  use segment_quadrature, only: segment_points
+  use segment_quarters, only: find_quarters, quarter
   use surface_facets, only: mark_corners
   use surface_segments, only: facet_set, segment_set
   implicit none
   private
   public :: lay_node_points, lay_gauss_points
-
-  !> A Gauss point: the mean over a quarter of a segment.
-  type :: quarter
-    real(rk) :: area = 0.0_rk !< [m2]
-    real(rk) :: slave_shape(4) = 0.0_rk, master_shape(4) = 0.0_rk
-    real(rk) :: normal(3) = 0.0_rk !< out of the slave's solid, of any length
-    real(rk) :: gap = 0.0_rk !< [m]
-  end type quarter
 
 contains
 
@@ -82,7 +75,7 @@ contains
                    pack(masters,.not. is_slave), pack(weights,.not. is_slave)/whole, built)
   end subroutine add_row
 
-  !> Four points per segment, each between one facet of the slave and one of the master face.
+  !> Up to four points per segment, each between one facet of the slave and one of the master face.
   subroutine lay_gauss_points(x, slave, master, segments, is_measured, built)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
@@ -96,8 +89,7 @@ contains
     call open_points(4*segments%num_segments, 32*segments%num_segments, built)
     p = 0
     do s = 1, segments%num_segments
-      call integrate_segment(x, slave, master, segments, s, points)
-      call find_quarters(points, quarters)
+      call find_quarters(x, slave, master, segments, s, points, quarters)
       associate (own => slave%node(:, segments%slave(s)), &
                  other => master%node(:, segments%master(s)))
         do q = 1, 4
@@ -115,34 +107,6 @@ contains
     call close_points(p, built)
     call list_cells(slave, segments, spread(.false., 1, size(slave%node, 2)), built%cells)
   end subroutine lay_gauss_points
-
-  !> Gathers the points of a segment into four, by the natural coordinates of the slave facet. Each
-  !> holds the means of its points, so that a constant traction is transmitted as exactly as by all.
-  pure subroutine find_quarters(points, quarters)
-    type(segment_points), intent(in) :: points
-    type(quarter), intent(out) :: quarters(4)
-    real(rk) :: xi(2, points%num_points), middle(2)
-    integer :: q, k
-    xi(1, :) = matmul([-1.0_rk, 1.0_rk, 1.0_rk, -1.0_rk], points%slave_shape(:, :points%num_points))
-    xi(2, :) = matmul([-1.0_rk, -1.0_rk, 1.0_rk, 1.0_rk], points%slave_shape(:, :points%num_points))
-    middle = matmul(xi, points%area(:points%num_points))/sum(points%area(:points%num_points))
-    do q = 1, points%num_points
-      k = 1 + count([xi(1, q) > middle(1)]) + 2*count([xi(2, q) > middle(2)])
-      associate (here => quarters(k), area => points%area(q))
-        here%area = here%area + area
-        here%slave_shape = here%slave_shape + area*points%slave_shape(:, q)
-        here%master_shape = here%master_shape + area*points%master_shape(:, q)
-        here%normal = here%normal + area*points%normal(:, q)
-        here%gap = here%gap + area*points%gap(q)
-      end associate
-    end do
-    do k = 1, 4
-      if (.not. quarters(k)%area > 0.0_rk) cycle
-      quarters(k)%slave_shape = quarters(k)%slave_shape/quarters(k)%area
-      quarters(k)%master_shape = quarters(k)%master_shape/quarters(k)%area
-      quarters(k)%gap = quarters(k)%gap/quarters(k)%area
-    end do
-  end subroutine find_quarters
 
   !> Allocates the points and their nodes.
   subroutine open_points(num_points, most_nodes, built)

@@ -7,7 +7,7 @@ module facet_clip
   use kinds, only: rk
   implicit none
   private
-  public :: clip_polygon, most_corners
+  public :: clip_polygon, cut_polygon, most_corners
 
   !> Two quads have at most 8 corners in common; round-off may bend an edge and add a few.
   integer, parameter :: most_corners = 16

@@ -33,6 +33,7 @@ module facet_plane
     real(rk) :: slave(3, 4), master(3, 4) !< corners [m]
     type(plane) :: ground !< of the slave facet
     type(flat_facet) :: own, other !< the slave and the master facet on it
+    real(rk) :: turn = 1.0_rk !< -1: the slave facet's normal points into the master
   end type facet_pair
 
   !> A twist below this fraction of the sides is round-off of the projection.

@@ -14,7 +14,7 @@ module segment_quadrature
   use surface_segments, only: facet_set, segment_set
   implicit none
   private
-  public :: segment_points, integrate_segment
+  public :: segment_points, integrate_segment, find_pair, integrate_polygon
 
   !> The points of one segment: places on the slave face, and values of both facets there.
   type :: segment_points
@@ -43,23 +43,38 @@ contains
     integer, intent(in) :: s
     type(segment_points), intent(inout) :: points !< memory is reused
     type(facet_pair) :: pair
-    real(rk) :: turn
-    integer :: first, last, i
+    call find_pair(x, slave, master, segments, s, pair)
+    call integrate_polygon(pair, segments%vertex(:, segments%first_vertex(s): &
+                                                 segments%first_vertex(s + 1) - 1), points)
+  end subroutine integrate_segment
+
+  !> The facets of segment s on the plane of the slave facet.
+  pure subroutine find_pair(x, slave, master, segments, s, pair)
+    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
+    type(facet_set), intent(in) :: slave, master
+    type(segment_set), intent(in) :: segments
+    integer, intent(in) :: s
+    type(facet_pair), intent(out) :: pair
     pair%slave = x(:, slave%node(:, segments%slave(s)))
     pair%master = x(:, master%node(:, segments%master(s)))
     call find_plane(pair%slave, pair%ground)
     call project_facet(pair%ground, pair%slave, pair%own)
     call project_facet(pair%ground, pair%master, pair%other)
-    first = segments%first_vertex(s)
-    last = segments%first_vertex(s + 1) - 1
-    call choose_rule(pair%own, pair%other, segments%vertex(:, first:last), points)
-    turn = 1.0_rk
-    if (slave%element(segments%slave(s)) == 0 .and. .not. pair%other%is_turned) turn = -1.0_rk
+    if (slave%element(segments%slave(s)) == 0 .and. .not. pair%other%is_turned) pair%turn = -1.0_rk
+  end subroutine find_pair
+
+  !> The integration points of a polygon, a segment of the pair or a part of one.
+  pure subroutine integrate_polygon(pair, polygon, points)
+    type(facet_pair), intent(in) :: pair
+    real(rk), intent(in) :: polygon(:, :) !< (2, corners) convex, anticlockwise [m]
+    type(segment_points), intent(inout) :: points !< memory is reused
+    integer :: i
+    call choose_rule(pair%own, pair%other, polygon, points)
     points%num_points = 0
-    do i = first + 1, last - 1
-      call add_triangle(pair, segments%vertex(:, [first, i, i + 1]), turn, points)
+    do i = 2, size(polygon, 2) - 1
+      call add_triangle(pair, polygon(:, [1, i, i + 1]), points)
     end do
-  end subroutine integrate_segment
+  end subroutine integrate_polygon
 
   !> Chooses the rule for a polygon and allocates its points.
   pure subroutine choose_rule(own, other, polygon, points)
@@ -108,10 +123,9 @@ contains
   end function points_for
 
   !> Adds the points of a triangle; u = 0 is its first corner.
-  pure subroutine add_triangle(pair, corner, turn, points)
+  pure subroutine add_triangle(pair, corner, points)
     type(facet_pair), intent(in) :: pair
     real(rk), intent(in) :: corner(2, 3)
-    real(rk), intent(in) :: turn !< -1: the slave facet's normal points into the master
     type(segment_points), intent(inout) :: points
     real(rk) :: a(2), b(2), u, xi(2), p(2), vector(3), area
     integer :: i, j, q
@@ -127,7 +141,7 @@ contains
         xi = natural_at(pair%own, p)
         vector = area_element(pair%ground, pair%own, pair%slave, xi)
         points%area(q) = area*u*points%weight(i)*points%weight(j)*norm2(vector)
-        points%normal(:, q) = turn*vector/norm2(vector)
+        points%normal(:, q) = pair%turn*vector/norm2(vector)
         points%slave_shape(:, q) = shape_at(pair%own, xi)
         points%master_shape(:, q) = shape_at(pair%other, natural_at(pair%other, p))
         points%x(:, q) = matmul(pair%slave, points%slave_shape(:, q))

@@ -48,6 +48,8 @@ module joint_history
     !> appeared, or was grouted [m]; in models with stages only
     real(rk), allocatable :: origin(:, :)
     integer, allocatable :: phase(:) !< (points) in models with stages only
+    !> (points) filled with grout under pressure at the start of the step; until it hardens
+    logical, allocatable :: is_pressed(:)
     !> (3, parts, points) the origin of each part, whose mean over the area is `origin`; where parts
     !> of points come and go [m]
     real(rk), allocatable :: part_origin(:, :, :)
@@ -76,6 +78,7 @@ contains
     call file%put('water', self%water)
     call file%put('origin', self%origin)
     call file%put('phase', self%phase)
+    call file%put('is_pressed', self%is_pressed)
     call file%put('part_origin', self%part_origin)
   end subroutine save_joint
 
@@ -99,6 +102,7 @@ contains
     call file%get('water', self%water, shape(self%gap))
     call file%get('origin', self%origin, [3, size(self%gap)])
     call file%get('phase', self%phase, shape(self%gap))
+    call file%get('is_pressed', self%is_pressed)
     call file%get('part_origin', self%part_origin)
   end subroutine load_joint
 

@@ -143,7 +143,8 @@ contains
                    'cohesion act. A point that is pressed keeps its pressure. Points that '// &
                    'appear later are not grouted until the next *GROUT of the joint; intact '// &
                    'points stay as they are. With PRESSURE the grout presses the faces apart, '// &
-                   'rising over the step, and hardens at its end.'
+                   'rising over the step, and hardens at its end. Points that are intact at '// &
+                   'the start of the step hold no grout, also where they break within it.'
     spec%example = '*GROUT, JOINT=J1'//nl//'*GROUT, JOINT=J2, PRESSURE=3e5'
     spec%most_lines = 0
     allocate (spec%parameters, source=[ &

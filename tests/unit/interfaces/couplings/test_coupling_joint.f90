@@ -23,6 +23,8 @@ program test_coupling_joint
   call shared_nodes_hold_together(log)
   call tied_nodes_leave_their_share(log)
   call gauss_points_share_the_area(log)
+  call gauss_points_hold_quarters(log)
+  call gauss_points_know_no_first_corner(log)
   call cells_draw_the_face(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -223,6 +225,73 @@ contains
     call check_close(log, force(17), -parts_area(parts(4, 1.0_rk), parts(2, 1.0_rk)), round_off, &
                      'int N_m dA at a corner of the master')
   end subroutine gauss_points_share_the_area
+
+  !> One facet of 2 x 1 m on its like: quarters, whichever corner comes first.
+  subroutine gauss_points_hold_quarters(log)
+    type(test_log), intent(inout) :: log
+    type(two_faces) :: pair
+    type(dam_joint) :: built
+    integer :: first
+    allocate (pair%x(3, 0))
+    call add_sheet(parts(1, 2.0_rk), parts(1, 1.0_rk), .false., pair%x, pair%slave)
+    call add_sheet(parts(1, 2.0_rk), parts(1, 1.0_rk), .true., pair%x, pair%master)
+    pair%x(1, :) = 2.0_rk*pair%x(1, :)
+    do first = 1, 4
+      pair%slave%node = cshift(pair%slave%node, 1, dim=1)
+      call lay_points(pair, built)
+      call check(log, built%num_points == 4, 'four points')
+      call check_close(log, maxval(abs(built%area - 0.5_rk)), 0.0_rk, round_off, 'quarters')
+      call check_close(log, maxval(abs(abs(built%x(1, :) - 1.0_rk) - 0.5_rk)), 0.0_rk, round_off, &
+                       'their middles along x')
+      call check_close(log, maxval(abs(abs(built%x(2, :) - 0.5_rk) - 0.25_rk)), 0.0_rk, round_off, &
+                       'their middles along y')
+    end do
+  end subroutine gauss_points_hold_quarters
+
+  !> Facets of any shape, warped ones and triangles among them: the points do not depend on the
+  !> corners at which slave and master facets begin.
+  subroutine gauss_points_know_no_first_corner(log)
+    type(test_log), intent(inout) :: log
+    type(two_faces) :: pair
+    type(dam_joint) :: built, turned
+    integer :: first, shape
+    do shape = 1, 3
+      call lay_faces(0.0_rk, pair)
+      if (shape > 1) then
+        pair%x(1, :) = pair%x(1, :) + 0.1_rk*pair%x(1, :)*pair%x(2, :)
+        pair%x(3, :) = 0.3_rk*pair%x(1, :)*pair%x(2, :)
+      end if
+      if (shape == 3) pair%slave%node(4, :) = pair%slave%node(3, :)
+      call lay_points(pair, built)
+      do first = 2, 4
+        pair%slave%node = cshift(pair%slave%node, 1, dim=1)
+        if (mod(first, 2) == 0) pair%master%node = cshift(pair%master%node, 1, dim=1)
+        call lay_points(pair, turned)
+        call check(log, turned%num_points == built%num_points, 'as many points')
+        call check_close(log, difference(built, turned), 0.0_rk, round_off, 'the same points')
+      end do
+    end do
+  end subroutine gauss_points_know_no_first_corner
+
+  subroutine lay_points(pair, built)
+    type(two_faces), intent(inout) :: pair
+    type(dam_joint), intent(out) :: built
+    call find_segments(pair%x, pair%slave, pair%master, pair%segments, pair%cover)
+    call lay_gauss_points(pair%x, pair%slave, pair%master, pair%segments, .true., built)
+  end subroutine lay_points
+
+  !> The largest difference of places, areas, distances and normals; points in any order.
+  pure real(rk) function difference(a, b)
+    type(dam_joint), intent(in) :: a, b
+    integer :: p, q
+    difference = 0.0_rk
+    do p = 1, a%num_points
+      q = minloc(norm2(b%x - spread(a%x(:, p), 2, b%num_points), dim=1), dim=1)
+      difference = max(difference, maxval(abs(a%x(:, p) - b%x(:, q))), &
+                       abs(a%area(p) - b%area(q)), abs(a%clearance(p) - b%clearance(q)), &
+                       maxval(abs(a%rotation(1, :, p) - b%rotation(1, :, q))))
+    end do
+  end function difference
 
   !> A quarter of the first facet.
   pure real(rk) function parts_area(s, t) result(area)
