@@ -62,5 +62,5 @@ def add_absent(path: Path) -> None:
     with h5py.File(path, "r+") as file:
         for problem in (file[name] for name in file if name.startswith("problem_")):
             for joint in (problem[name] for name in problem if name.startswith("joint_")):
-                for name in {"origin", "part_origin", "phase"} - set(joint):
+                for name in {"is_pressed", "origin", "part_origin", "phase"} - set(joint):
                     joint[name] = h5py.Empty("i4")

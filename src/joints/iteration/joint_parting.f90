@@ -10,11 +10,13 @@ module joint_parting
 
 contains
 
-  !> How many parted points carry less than their law allows: closed ones without their cohesion,
-  !> and those that were bonded when the increment began.
-  integer function count_parted(joints, operator, old, new) result(num_parted)
+  !> How many parted points carry less than their law allows: those that were bonded when the
+  !> increment began and, in statics, closed ones without their cohesion. In motion they have it
+  !> again in the next increment.
+  integer function count_parted(joints, operator, is_static, old, new) result(num_parted)
     type(dam_joint), intent(in) :: joints(:)
     type(jump_operator), intent(in) :: operator
+    logical, intent(in) :: is_static
     type(joint_state), intent(in) :: old(:) !< converged histories
     type(joint_state), intent(in) :: new(:) !< of the last evaluation
     real(rk) :: friction, cohesion, strength
@@ -28,7 +30,7 @@ contains
         if (new(j)%num_openings(p) < openings_to_part) cycle
         if (.not. old(j)%is_broken(p)) then
           num_parted = num_parted + 1
-        else if (cohesion > 0.0_rk .and. .not. is_bare(old(j), p) .and. &
+        else if (is_static .and. cohesion > 0.0_rk .and. .not. is_bare(old(j), p) .and. &
                  any(new(j)%status(p) == [state_stick, state_slip])) then
           num_parted = num_parted + 1
         end if

@@ -111,7 +111,7 @@ contains
     type(balance_outcome), intent(inout) :: outcome
     call find_equilibrium(process, controls, joints, operator, old, field, new, outcome)
     if (.not. outcome%has_converged) return
-    if (count_parted(joints, operator, old, new) == 0) return
+    if (count_parted(joints, operator, field%is_static, old, new) == 0) return
     call try_full_laws(process, controls, joints, operator, old, field, new, outcome)
   end subroutine iterate_joints
 
@@ -161,7 +161,7 @@ contains
     type(balance_outcome) :: kept_outcome
     real(rk), allocatable :: kept_x(:)
     integer :: num_parted
-    num_parted = count_parted(joints, operator, old, new)
+    num_parted = count_parted(joints, operator, field%is_static, old, new)
     kept_field = field
     kept_state = new
     kept_outcome = outcome
@@ -179,7 +179,7 @@ contains
       end if
     end if
     if (outcome%has_converged .and. .not. allocated(process%failure)) then
-      if (count_parted(joints, operator, old, new) < num_parted) return
+      if (count_parted(joints, operator, field%is_static, old, new) < num_parted) return
     end if
     if (allocated(process%failure)) deallocate (process%failure)
     kept_outcome%iterations = outcome%iterations

@@ -78,14 +78,14 @@ contains
     call list%add(severity_error, spot_of(4, 1, 1, 'x'//achar(27)//'[2J'), 'w'//achar(7))
     spot%file = 'no.inp'
     call list%add(severity_error, spot, 'cannot read it')
-    call check_text(log, text_of_errors(list), &
+    ! The file that cannot be read comes first: what it should hold is missing elsewhere.
+    call check_text(log, text_of_errors(list), 'no.inp: cannot read it'//lf// &
                     'dam.inp:1: *ELASTIC: w'//lf//'    1 | '//tab//'a,b'//lf//'      | '//tab// &
                     '  ^'//lf// &
                     'dam.inp:2: *ELASTIC: w'//lf//'    2 | '//umlaut//','//umlaut//umlaut//lf// &
                     '      |   ^^'//lf// &
                     'dam.inp:3: *ELASTIC: w'//lf//'    3 | 1,'//lf//'      |   ^'//lf// &
-                    'dam.inp:4: *ELASTIC: w?'//lf//'    4 | x?[2J'//lf//'      | ^'//lf// &
-                    'no.inp: cannot read it', 'odd lines')
+                    'dam.inp:4: *ELASTIC: w?'//lf//'    4 | x?[2J'//lf//'      | ^', 'odd lines')
   end subroutine odd_lines
 
   !> Of a long line the part around the word is shown.
