@@ -111,7 +111,6 @@ contains
     type(balance_outcome), intent(inout) :: outcome
     call find_equilibrium(process, controls, joints, operator, old, field, new, outcome)
     if (.not. outcome%has_converged) return
-    if (count_parted(joints, operator, field%is_static, old, new) == 0) return
     call try_full_laws(process, controls, joints, operator, old, field, new, outcome)
   end subroutine iterate_joints
 
@@ -157,11 +156,12 @@ contains
     type(joint_state), intent(inout) :: new(:) !< in equilibrium
     type(balance_outcome), intent(inout) :: outcome
     type(joint_field) :: kept_field
-    type(joint_state) :: kept_state(size(new))
+    type(joint_state), allocatable :: kept_state(:)
     type(balance_outcome) :: kept_outcome
     real(rk), allocatable :: kept_x(:)
     integer :: num_parted
     num_parted = count_parted(joints, operator, field%is_static, old, new)
+    if (num_parted == 0) return
     kept_field = field
     kept_state = new
     kept_outcome = outcome
