@@ -91,7 +91,7 @@ class Deck:
 
     cards: list[Card]
     files: dict[str, str] = field(default_factory=dict)  # texts that stand beside the deck
-    sources: set[Path] = field(default_factory=set)  # files that it was read from
+    sources: set[Path] = field(default_factory=set, compare=False)  # files that it was read from
 
     def copy(self) -> Deck:
         return deepcopy(self)
