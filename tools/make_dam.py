@@ -28,10 +28,10 @@ from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.arch_blocks import JOINS, build_block_dam
-from keyway_tools.arch_checks import check_deck_options
+from keyway_tools.arch_checks import check_deck_options, check_motion_options
 from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
-from keyway_tools.arch_deck import DeckOptions, arch_dam_deck
+from keyway_tools.arch_deck import DeckOptions, arch_dam_deck, title_of
 from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
@@ -315,6 +315,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         shape = ArchShape(**{name: getattr(chosen, name) for name in names})
         mesh_options, options = mesh_options_of(chosen), deck_options_of(chosen)
+        check_motion_options(chosen)
         build = partial(build_dam, chosen, shape)
         if chosen.unknowns:
             mesh_options = sized_dam(mesh_options, chosen.unknowns, build)
@@ -333,7 +334,9 @@ def main(arguments: list[str] | None = None) -> int:
         return 1
     notes = tuple(chosen.note)
     building = (options.construction, options.heat)
-    heading = header(mesh, shape, mesh_options, options.title, notes, blocks, *building)
+    heading = header(
+        mesh, shape, mesh_options, title_of(mesh, options.title), notes, blocks, *building
+    )
     mesh_file = write_deck(chosen, mesh, heading, options)
     show(chosen, mesh, mesh_file)
     return 0

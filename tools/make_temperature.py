@@ -8,6 +8,7 @@ The file has a row for each node and a column for each time, for *TEMPERATURE, I
 shows the field on four dates. The upstream face has the temperature of the water below its level
 (Zhu's formula), that of the air above it; the downstream face that of the air. Between the faces
 the temperature is the steady periodic solution of conduction through the thickness.
+Heights are coordinates along the axis that points up: UP of *RESERVOIR in the deck, --up, else z.
 docs/temperature.md has the formulas and what they leave out. Lengths are in m, temperatures in
 degrees Celsius, months count from 1 January: 0.5 is the middle of January.
 """
@@ -67,6 +68,8 @@ def add_mesh_options(parser: argparse.ArgumentParser) -> None:
     text = "face, a surface or a set of nodes"
     group.add_argument("--upstream", default="UPSTREAM", help=f"{text} (UPSTREAM)")
     group.add_argument("--downstream", default="DOWNSTREAM", help=f"{text} (DOWNSTREAM)")
+    what = "axis that points up (UP of *RESERVOIR in the deck, else 3: z)"
+    group.add_argument("--up", type=int, choices=(1, 2, 3), help=what)
     group.add_argument(
         "--diffusivity", type=above_zero, default=1.0e-6, help="of the concrete [m2/s] (1e-6)"
     )
@@ -94,7 +97,10 @@ def add_climate_options(parser: argparse.ArgumentParser) -> None:
         help="annual mean and amplitude at the surface, mean at the bottom (no water)",
     )  # fmt: skip
     group.add_argument(
-        "--level", nargs="+", metavar="Z", help="of the water: a height, or MONTH:HEIGHT words"
+        "--level",
+        nargs="+",
+        metavar="Z",
+        help="of the water along the axis that points up: a height, or MONTH:HEIGHT words",
     )
     group.add_argument("--bed", type=finite, help="height of the bottom (foot of the face)")
 
@@ -168,7 +174,9 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = read_options(arguments)
     output = chosen.output or chosen.deck.with_name(f"{chosen.deck.stem}_temperature.csv")
     try:
-        dam = read_dam(chosen.deck, chosen.dam, chosen.upstream, chosen.downstream)
+        dam = read_dam(chosen.deck, chosen.dam, chosen.upstream, chosen.downstream, chosen.up)
+        if output.resolve() in dam.sources:
+            raise ValueError(f"{output}: the output would overwrite the deck; expected a new file")
         climate, times = climate_of(chosen, dam), times_of(chosen)
         is_even = climate.level is None or climate.level.is_constant
         harmonics = FEW if is_even else MANY

@@ -7,6 +7,7 @@ set(sources
   load_pressure.f90
   load_reservoir.f90
   load_uplift.f90
+  upward_axis.f90
   water_paths.f90
   wetted_facet.f90
 )

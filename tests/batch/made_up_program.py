@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-# The first line is `ok VALUE`, `fail CODE`, `sleep SECONDS` or `crash`.
+# The first line is `ok VALUE`, `fail CODE`, `sleep SECONDS`, `deaf SECONDS` or `crash`.
 PROGRAM = """import json, os, signal, sys, time
 from pathlib import Path
 if sys.argv[1] == "--version":
@@ -19,6 +19,9 @@ with open(folder.parent / "processes.txt", "a") as processes:
     print(os.getpid(), file=processes)
 verb, _, value = deck.read_text().splitlines()[0].removeprefix("** ").partition(" ")
 if verb == "sleep":
+    time.sleep(float(value))
+if verb == "deaf":
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     time.sleep(float(value))
 if verb == "crash":
     os.kill(os.getpid(), signal.SIGSEGV)

@@ -124,6 +124,24 @@ def test_interruption_ends_the_children_and_goes_on_later(place):
     assert [line.split()[0] for line in calls(place)] == ["first", "slow", "slow", "c"]
 
 
+def test_a_second_signal_while_the_runs_end(place):
+    """The command `timeout` sends its signal twice; the child here ends a second after it."""
+    command = [sys.executable, str(BATCH), deck(place, "slow", "deaf 3"), "--program", "keyway"]
+    child = subprocess.Popen([*command, "--json", "table.json"], stderr=subprocess.PIPE, text=True)
+    for _ in range(200):
+        if len(calls(place)) == 1:
+            break
+        time.sleep(0.05)
+    time.sleep(0.5)  # the run does not hear the signal from here on
+    for _ in range(2):
+        child.send_signal(signal.SIGTERM)
+        time.sleep(0.3)
+    told = child.communicate(timeout=60)[1]
+    assert child.returncode == batch.EXIT_INTERRUPTED
+    assert "Traceback" not in told, told
+    assert set(table(place)) == {"slow"}
+
+
 @pytest.mark.parametrize("arguments", [["nothing.inp"], ["."], ["x.inp", "-j", "0"]])
 def test_usage(place, arguments):
     try:

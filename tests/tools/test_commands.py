@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import make_dam
 import make_motion
 import pytest
@@ -97,3 +98,21 @@ def test_a_summary_cut_short_is_said_with_its_name(tmp_path, capsys):
         assert main([str(tmp_path / "job.json")]) == 2
         told = capsys.readouterr().err
         assert told.startswith(f"{name}: {tmp_path / 'job.json'} cannot be read, it is not whole: ")
+
+
+def test_a_foreign_file_of_results_is_named(tmp_path, capsys):
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["values"] = [1.0]
+    (tmp_path / "other.json").write_text('{"program": {}, "status": "finished"}')
+    for main in (plot.main, report):
+        assert main([str(tmp_path / "other.h5")]) == 2
+        told = capsys.readouterr().err
+        assert "other.h5 holds no results of Keyway" in told, told
+
+
+def test_a_report_replaces_no_other_file(tmp_path, capsys):
+    deck = tmp_path / "dam.inp"
+    deck.write_text("*HEADING\nDam\n")
+    assert report([str(tmp_path), "-o", str(deck)]) == 2
+    assert "dam.inp exists and is no HTML page" in capsys.readouterr().err
+    assert deck.read_text() == "*HEADING\nDam\n"

@@ -235,3 +235,8 @@ def test_options_without_effect_are_named(capsys, a):
     ]
     assert compare.main([str(a), str(a), "--tol", "U1=x"]) == 2
     assert "--tol U1=x: expected COLUMN=REL[,ABS], numbers of 0 or more" in capsys.readouterr().err
+
+
+def test_a_table_of_two_folders_is_refused(capsys, tmp_path, a):
+    assert compare.main([str(a), str(a), "--table", "nope"]) == 2
+    assert "--table belongs to a reference in CSV" in capsys.readouterr().err

@@ -174,3 +174,23 @@ def test_chain_of_the_paper(tmp_path):
 def test_impossible_blocks_are_reported(tmp_path, capsys):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), *BLOCKS[:2], "--fine", "7"]) == 2
     assert "fine blocks must lie in 1..3" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "options",
+    ["--reduced 0.02", "--duration 5", "--increment 0.02", "--damping 0.03 2 10",
+     "--motion-dt 0.02", "--motion-unit g", "--damping-base CURRENT"],
+)  # fmt: skip
+def test_options_of_the_dynamic_step_need_a_motion(tmp_path, capsys, options):
+    words = options.split()
+    assert make_dam.main(["-o", str(tmp_path / "dam.inp"), *words]) == 2
+    assert f"{words[0]} has no effect without --motion FILE" in capsys.readouterr().err
+    assert not (tmp_path / "dam.inp").exists()
+
+
+def test_title_and_joints_in_words(tmp_path):
+    deck, _ = write_deck(tmp_path, "--joints", "0", "--no-rock")
+    assert "*HEADING\nArch dam\n" in deck
+    deck, _ = write_deck(tmp_path, "--joints", "1", "--no-rock")
+    assert "*HEADING\nArch dam with contraction joints\n" in deck
+    assert "Joints: 1 vertical plane through" in deck

@@ -238,3 +238,43 @@ def test_a_deck_that_is_not_there(tmp_path, capsys):
 def test_an_amplitude_below_zero(deck, capsys):
     assert make_temperature.main([str(deck[0]), "--air", "14", "-10"]) == 2
     assert "amplitude of the air: -10; expected >= 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("by_option", [True, False])
+def test_the_axis_that_points_up(deck, by_option):
+    """With y up, by --up or by *RESERVOIR, all temperatures are those of the dam with z up."""
+    path, mesh = deck
+    usual = make(path, *WAVE, *WATER, "--times", "0", "3")
+    file = path.with_name("wall_mesh.inp")
+    text = file.read_text()
+    for number, (x, y, z) in enumerate(mesh.x.tolist(), start=1):
+        old = f"\n{number}, {x!r}, {y!r}, {z!r}\n"
+        assert old in text
+        text = text.replace(old, f"\n{number}, {y!r}, {z!r}, {x!r}\n")
+    file.write_text(text)
+    if not by_option:
+        lake = "*STEP\n*STATIC\n*RESERVOIR, NAME=L, SURFACE=UPSTREAM, LEVEL=20, BED=6, UP=2\n"
+        path.write_text(path.read_text() + lake + "*END STEP\n")
+    turned = make(path, *WAVE, *WATER, "--times", "0", "3", *(["--up", "2"] if by_option else []))
+    for time, rows in usual.items():
+        assert turned[time]["value"] == pytest.approx(rows["value"], abs=DIGITS)
+
+
+def test_a_deck_in_mm_is_refused(deck, capsys):
+    path, mesh = deck
+    mesh.x *= 1000.0
+    types = {"DAM": "C3D8", "ROCK": "C3D8"}
+    path.with_name("wall_mesh.inp").write_text(mesh_deck(mesh, types, "mm"))
+    assert make_temperature.main([str(path), *WAVE, "--no-picture"]) == 2
+    assert "the dam is 24000 high along z; expected lengths in m" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["wall.inp", "wall_mesh.inp"])
+def test_the_deck_is_not_overwritten(deck, capsys, name):
+    """Neither the deck nor a file that it includes."""
+    path, _ = deck
+    file = path.with_name(name)
+    before = file.read_text()
+    assert make_temperature.main([str(path), *WAVE, "-o", str(file)]) == 2
+    assert "the output would overwrite the deck" in capsys.readouterr().err
+    assert file.read_text() == before

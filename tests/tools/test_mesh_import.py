@@ -319,3 +319,10 @@ def test_example_has_the_mesh_that_the_tool_makes(tmp_path):
     file = str(EXAMPLE / "gmsh_arch.msh")
     assert main([file, "--split", "JOINT1", "JOINT2", "-o", str(output)]) == 0
     assert output.read_text() == (EXAMPLE / "gmsh_arch_mesh.inp").read_text()
+
+
+def test_a_table_is_no_mesh(tmp_path, capsys):
+    """meshio takes the rows of a table in an .inp for nodes."""
+    (tmp_path / "table.inp").write_text("node,0,1,2,3,4\n1,2,3,4,5,6\n2,3,4,5,6,7\n")
+    assert main([str(tmp_path / "table.inp")]) == 2
+    assert "table.inp: no nodes; expected a mesh of solids" in capsys.readouterr().err

@@ -2,7 +2,9 @@
 
 import contextlib
 import io
+import shutil
 
+import h5py
 import imageio_ffmpeg
 import matplotlib.image
 import numpy as np
@@ -17,7 +19,7 @@ from keyway_tools.dam_views import Faces
 from keyway_tools.picture_style import Sheet
 from keyway_tools.pictures_damage import worst_element
 from keyway_tools.pictures_faces import plot_envelope
-from keyway_tools.pictures_joints import JointView, last_slips, ranges_of
+from keyway_tools.pictures_joints import JointView, last_slips, plot_joint_slips, ranges_of
 from keyway_tools.pictures_shapes import masses_in_words
 from keyway_tools.results import Results, find_jobs
 from keyway_tools.shared_scales import shared_scales
@@ -296,3 +298,16 @@ def test_upright_joints_share_one_scale():
             assert along[1] > 60.0
         assert ranges_of(tall, order) == ranges_of(short, order)
         assert ranges_of(flat, order)[1][1] < 20.0
+
+
+def test_round_off_is_no_slip(tmp_path, dam_results):
+    """A slip of 2e-14 m in a dam of 100 m has no map, one of a hundredth of a millimetre has."""
+    for size, count in ((2e-14, 0), (1e-5, 1)):
+        folder = tmp_path / str(count)
+        shutil.copytree(dam_results, folder, ignore=shutil.ignore_patterns("*.png"))
+        with h5py.File(folder / "job.h5", "r+") as file:
+            for saved in file["steps/0001/increments"].values():
+                for joint in saved["joints"].values():
+                    joint["slip"][:] *= size / 0.03
+        sheet = Sheet(folder / "slip")
+        assert len(plot_joint_slips(SiResults(folder), Scales(), sheet)) == count

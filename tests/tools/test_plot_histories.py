@@ -237,3 +237,10 @@ def test_fields_that_are_not_whole_are_named(folder, capsys):
     (folder / "job.h5").write_bytes(content.replace(b"HEAP", b"\0\0\0\0"))
     assert plot.main([str(folder)]) == 2
     assert "job.h5" in capsys.readouterr().err
+
+
+def test_energies_of_one_increment_begin_at_zero(folder):
+    """Work and strain differ by round-off alone: that is not the scale."""
+    write_energies(folder, {"external": 0.426, "strain": 0.426 * (1.0 + 1e-13)}, 1)
+    text = words_of(plot_energy, SiResults(folder), folder)
+    assert ">0.0</text>" in text

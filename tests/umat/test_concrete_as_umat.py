@@ -131,6 +131,10 @@ def test_other_files_are_not_overwritten(one_file, tmp_path):
     assert run.returncode == 2
     assert "exists and was not written by make_umat" in run.stderr
     assert mine.read_text() == "subroutine umat\nend subroutine\n"
+    two = [tmp_path / "a.f90", tmp_path / "b.f90"]
+    run = subprocess.run([*command, *two], capture_output=True, text=True)
+    assert (run.returncode, two[0].exists()) == (2, False)
+    assert "expected one FILE, found 2 words" in run.stderr
 
 
 def test_constants_are_printed():

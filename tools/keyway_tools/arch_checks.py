@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import argparse
 
+from .arch_deck import DeckOptions
+
 MOST_PRINTED = 2**31 - 1  # integers of a deck
+# Options of the dynamic step or of its motion, with their defaults
+OF_MOTION = {
+    "motion_dt": DeckOptions.motion_dt,
+    "motion_unit": None,
+    "duration": DeckOptions.duration,
+    "increment": DeckOptions.increment,
+    "damping": DeckOptions.damping,
+    "damping_base": DeckOptions.damping_base,
+    "reduced": None,
+}
 
 
 def check_deck_options(chosen: argparse.Namespace) -> None:
@@ -21,9 +33,20 @@ def check_deck_options(chosen: argparse.Namespace) -> None:
         raise ValueError(f"--picture-every {chosen.picture_every}: expected up to {MOST_PRINTED}")
 
 
+def check_motion_options(chosen: argparse.Namespace) -> None:
+    """Without a motion there is no dynamic step. Raises ValueError."""
+    if chosen.motion:
+        return
+    for name, default in OF_MOTION.items():
+        value = getattr(chosen, name)
+        if (tuple(value) if isinstance(value, list) else value) != default:
+            raise ValueError(f"--{name.replace('_', '-')} has no effect without --motion FILE")
+
+
 def _check_words(chosen: argparse.Namespace) -> None:
     """The title is a line of the deck, a note a paragraph of its header."""
-    if len(chosen.title.splitlines()) > 1 or chosen.title.lstrip().startswith("*"):
+    title = chosen.title or ""
+    if len(title.splitlines()) > 1 or title.lstrip().startswith("*"):
         raise ValueError(f"--title {chosen.title!r}: expected one line that begins without '*'")
     for note in chosen.note:
         head, _, text = note.partition(": ")

@@ -16,7 +16,7 @@ LARGEST_ERROR = 0.5  # of *DYNAMIC, REDUCED, ACCURACY (keywords.md)
 class DeckOptions:
     """Everything of the deck but the mesh; SI units. Defaults: paper_notes.md, 3, 5, 14."""
 
-    title: str = "Arch dam with contraction joints"
+    title: str | None = None  # None: 'Arch dam', 'with contraction joints' where it has some
     element_type: str = "C3D8"
     concrete: tuple[float, float, float] = (22.0e9, 0.167, 2400.0)  # E [Pa], nu, rho [kg/m3]
     concrete_cards: tuple[str, ...] = ()  # that follow *ELASTIC: the law of the concrete
@@ -67,9 +67,17 @@ class DeckOptions:
             raise ValueError("--reduced takes --uplift LINEAR, not OPEN")
 
 
+def title_of(mesh: BrickMesh, given: str | None) -> str:
+    """The title of a deck."""
+    if given is not None:
+        return given
+    return "Arch dam with contraction joints" if mesh.joint_names else "Arch dam"
+
+
 def arch_dam_deck(mesh: BrickMesh, heading: str, mesh_file: str, options: DeckOptions) -> str:
     """Main file of the deck, which includes the mesh by *INCLUDE."""
-    parts = [comment(heading), "*HEADING", options.title, f"*INCLUDE, INPUT={mesh_file}"]
+    title = title_of(mesh, options.title)
+    parts = [comment(heading), "*HEADING", title, f"*INCLUDE, INPUT={mesh_file}"]
     parts += _materials(mesh, options) + _joints(mesh, options) + _couplings(mesh, options)
     parts += options.heat.initial_cards() if options.heat else []
     parts += ["*BOUNDARY", "FIXED, 1, 3", *_amplitudes(options), *_static_steps(mesh, options)]

@@ -56,9 +56,11 @@ def header(
             "same mesh on both sides (classical joint); the foot row is shared with the rock, "
             "where the joint ends"
         )
+        count = len(mesh.joint_names)
+        planes = "1 vertical plane" if count == 1 else f"{count} vertical planes"
         lines += paragraph(
             "Joints",
-            f"{len(mesh.joint_names)} vertical planes through the axis of the crest's upstream arc,"
+            f"{planes} through the axis of the crest's upstream arc,"
             f" {_joint_places(options)} (places assumed)" + (f", {ends}" if has_one_mesh else ""),
         )
     at_once = "acts on the finished dam at once: no stages of building, no grouting (assumed)"

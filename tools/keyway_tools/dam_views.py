@@ -9,6 +9,7 @@ import pyvista as pv
 
 from .render_dam import View, solid_grid
 from .si_results import SiResults
+from .upright import axes_with_up_last
 
 TILT = 12.0  # [deg] from above
 
@@ -69,7 +70,9 @@ class Faces:
         """The views and one from above; a slice is only seen from its side."""
         views = dict(self.views)
         if len(views) > 1:
-            views["From above"] = View.from_direction(views["Downstream face"].towards, 89.9)
+            views["From above"] = View.from_direction(
+                views["Downstream face"].towards, 89.9, self.results.upward
+            )
         return views
 
     def joint_lines(
@@ -105,19 +108,22 @@ def _views(results: SiResults, nodes: np.ndarray) -> dict[str, View]:
     x = results.x[nodes]
     upstream, downstream = results.face_flags("upstream"), results.face_flags("downstream")
     if not upstream.any():
-        return {"": _single_view(x)}
+        return {"": _single_view(x, results.up_axis)}
     other = results.x[downstream] if downstream.any() else x
     towards = results.x[upstream].mean(axis=0) - other.mean(axis=0)
-    view = View.from_direction(towards, TILT)
+    upward = results.upward
+    view = View.from_direction(towards, TILT, upward)
     if np.ptp(x @ view.right) < 0.5 * np.ptp(x @ view.towards):  # a slice: its side shows more
-        return {"": View.from_direction(view.right, 0.0)}
-    return {"Upstream face": view, "Downstream face": View.from_direction(-towards, TILT)}
+        return {"": View.from_direction(view.right, 0.0, upward)}
+    other_side = View.from_direction(-towards, TILT, upward)
+    return {"Upstream face": view, "Downstream face": other_side}
 
 
-def _single_view(x: np.ndarray) -> View:
+def _single_view(x: np.ndarray, up_axis: int) -> View:
     """A slice in true view, another body from a corner and above."""
-    size = np.ptp(x, axis=0)
-    thin = int(size[:2].argmin())
-    if size[thin] < 0.25 * min(size[1 - thin], size[2]):
-        return View.from_direction(-np.eye(3)[thin], 0.0)
-    return View.from_direction(np.array([0.55, -1.0, 0.0]), 18.0)
+    size, axes = np.ptp(x, axis=0), np.eye(3)
+    first, second, up = axes_with_up_last(up_axis)
+    thin, wide = (first, second) if size[first] <= size[second] else (second, first)
+    if size[thin] < 0.25 * min(size[wide], size[up]):
+        return View.from_direction(-axes[thin], 0.0, axes[up])
+    return View.from_direction(0.55 * axes[first] - axes[second], 18.0, axes[up])

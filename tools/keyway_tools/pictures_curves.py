@@ -220,6 +220,8 @@ def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
     for number, name in enumerate(shown):
         values = scale * table[name]
         axes[0].plot(table["time"], values, marker=mark, label=name, **_look(number))
+    # Without zero the scale of one increment is round-off.
+    axes[0].axhline(0.0, color=GREY, lw=0.8)
     axes[0].set_title("Energy balance")
     axes[0].set_ylabel(f"energy [{unit}]")
     axes[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

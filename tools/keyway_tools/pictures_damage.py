@@ -35,7 +35,7 @@ def plot_mean_envelope(
     body.cell_data["value"] = damage[faces.elements]
     paint = Paint(None, limits.ends, field.colours, limits.bands)
     pictures = render_views(faces.views, body, paint, faces.joint_lines())
-    heading = f"{field.label} over step {step.name.title()}\n"
+    heading = f"{field.label} over step {step.name}\n"
     heading += worst_element(faces, damage, name)
     label = f"{field.label.lower()}, element mean"
     return compose(Drawing(pictures, limits, field.colours, label, heading), sheet)

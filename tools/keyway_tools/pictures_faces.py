@@ -67,7 +67,7 @@ def plot_envelope(
     level = scales.levels.get(name)
     paint = Paint(values, limits.ends, shown.colours, limits.bands, level)
     pictures = render_views(views or faces.views, faces.grid(), paint, faces.joint_lines())
-    heading = f"{shown.label} over step {step.name.title()}\n"
+    heading = f"{shown.label} over step {step.name}\n"
     heading += _extreme_in_words(faces, step, name)
     marks = _marks(faces, values, shown)
     label = shown.label.lower() + (f", {shown.on_nodes}" if shown.on_nodes else "")
@@ -188,7 +188,7 @@ def plot_face_openings(faces: Faces, step: Step, scales: Scales, sheet: Sheet) -
     limits = scales.limits("OPENING", opening)
     paint = Paint(None, limits.ends, shown.colours, limits.bands)
     pictures = render_views(faces.views, faces.grid(), paint, lines)
-    heading = f"{shown.label} over step {step.name.title()}\n"
+    heading = f"{shown.label} over step {step.name}\n"
     heading += _extreme_in_words(faces, step, "OPENING")
     marks = _marks(faces, values, shown)
     drawing = Drawing(pictures, limits, shown.colours, "largest opening [mm]", heading, marks)

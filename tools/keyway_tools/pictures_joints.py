@@ -17,10 +17,12 @@ from .joint_faces import JointFaces
 from .picture_style import Sheet, headline, new_figure
 from .results import Step
 from .si_results import SiResults, saved_increments
+from .upright import Z, axes_with_up_last
 
 STATES = {-2: "not there", -1: "shared node", 0: "open", 1: "stick", 2: "slip", 3: "bonded"}
 SHOWN_IN_PLAN = 0.3  # of the area
 WIDEST = 13.0  # [inches]
+ROUND_OFF = 1e-10  # of the size of the model: no slip; displacements are solved to some 1e-12 of it
 STATE_COLOURS = ("#EEEEEE", "#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
 
 
@@ -31,7 +33,9 @@ class JointView:
     whose two sides would hide each other in an elevation.
     """
 
-    def __init__(self, x: np.ndarray, triangles: np.ndarray | None = None):
+    def __init__(self, x: np.ndarray, triangles: np.ndarray | None = None, up_axis: int = Z):
+        order = axes_with_up_last(up_axis)
+        x, names = x[:, order], ["xyz"[axis] for axis in order]
         size = np.ptp(x, axis=0)
         self.is_upright = size[2] > 0.05 * size.max()
         if triangles is not None and len(triangles):
@@ -42,9 +46,10 @@ class JointView:
             across = across if across[np.abs(across).argmax()] > 0.0 else -across
             along, self.up = x[:, :2] @ across, x[:, 2]
             self.along = along - along.min()
-            self.labels = ("along [m]", "height z [m]")
+            self.labels = ("along [m]", f"height {names[2]} [m]")
         else:
-            self.along, self.up, self.labels = x[:, 0], x[:, 1], ("x [m]", "y [m]")
+            self.along, self.up = x[:, 0], x[:, 1]
+            self.labels = (f"{names[0]} [m]", f"{names[1]} [m]")
 
 
 def _part_in_plan(x: np.ndarray, triangles: np.ndarray) -> float:
@@ -78,7 +83,7 @@ class JointPage:
     def __init__(self, results: SiResults, joints: dict[str, JointFaces]):
         self.joints = joints
         self.views = {
-            name: JointView(joint.on_corners(results.x), joint.triangles)
+            name: JointView(joint.on_corners(results.x), joint.triangles, results.up_axis)
             for name, joint in joints.items()
         }
         tallest = max(self._shape(name) for name in joints)
@@ -165,7 +170,7 @@ def plot_joint_areas(results: SiResults, step: Step, scales: Scales, sheet: Shee
         shade = page.fill(name, values[name], borders, FIELDS["OPENING"].colours)
         page.frame(name, f"{name}\n{values[name].max():.3g} mm")
     page.bar(shade, "largest opening [mm]")
-    headline(page.figure, f"Joint openings over step {step.name.title()}")
+    headline(page.figure, f"Joint openings over step {step.name}")
     return sheet.save(page.figure)
 
 
@@ -192,7 +197,7 @@ def plot_joint_slips(results: SiResults, scales: Scales, sheet: Sheet) -> list[P
     """Irrecoverable sliding of every joint at the last saved time."""
     slips, time = last_slips(results)
     everything = np.concatenate([np.zeros(1), *slips.values()])
-    if everything.max() <= 0.0:
+    if everything.max() <= ROUND_OFF * float(np.ptp(results.x, axis=0).max()):
         return []
     page = JointPage(results, joints_with_faces(results))
     borders = scales.limits("SLIP", everything).borders

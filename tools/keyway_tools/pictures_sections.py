@@ -13,6 +13,7 @@ from .picture_style import Sheet
 from .pictures_faces import Drawing, Mark, compose, place_of
 from .render_dam import Paint, View, render
 from .results import Step
+from .upright import horizontal
 
 
 def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: Sheet) -> list[Path]:
@@ -36,7 +37,7 @@ def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: She
     picture = render(cut, view, paint)
     number = shown.with_unit(shown.scale * values[place])
     heading = f"{shown.label}: section from face to face\nextreme {number} at "
-    heading += f"{place_of(faces.results.x[place], faces.size)}, step {step.name.title()}"
+    heading += f"{place_of(faces.results.x[place], faces.size)}, step {step.name}"
     marks = {"": Mark(view.project(faces.results.x[place]), number)}
     label = f"{shown.label.lower()} [{shown.unit}]"
     return compose(Drawing({"": picture}, limits, shown.colours, label, heading, marks), sheet)
@@ -53,7 +54,8 @@ def _cut(body: pv.UnstructuredGrid, view: View, x: np.ndarray, size: float) -> p
     for aside in (1e-4 * size, -1e-4 * size, 0.02 * size, -0.02 * size):
         cut = body.slice(normal=view.towards, origin=x + aside * view.towards)
         if cut.n_cells:
-            near = np.abs((cut.cell_centers().points - x) @ view.right) < np.ptp(body.points[:, 2])
+            height = np.ptp(body.points @ view.up)
+            near = np.abs((cut.cell_centers().points - x) @ view.right) < height
             if not near.any():
                 continue
             cut = cut.extract_cells(near).extract_surface(algorithm="dataset_surface")
@@ -70,8 +72,7 @@ def _view_of_section(faces: Faces, place: int) -> View:
     near = np.flatnonzero(results.face_flags("upstream"))
     far = np.linalg.norm(results.x[near] - results.x[place], axis=1)
     normals = faces.normals[near[np.argsort(far)[:9]]]
-    across = -normals.sum(axis=0)
-    across[2] = 0.0
+    across = horizontal(-normals.sum(axis=0), results.upward)
     if np.linalg.norm(across) < 1e-9:
-        across = np.array([downstream[0], downstream[1], 0.0])
-    return View.from_direction(np.cross(across, [0.0, 0.0, 1.0]), 0.0)
+        across = horizontal(downstream, results.upward)
+    return View.from_direction(np.cross(across, results.upward), 0.0, results.upward)

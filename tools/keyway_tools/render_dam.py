@@ -12,6 +12,8 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkLogger
 
+from .upright import Z, horizontal
+
 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # no warnings about a missing X server
 
 PIXELS = (1500, 1000)
@@ -25,6 +27,7 @@ WEDGE = (
     6,
     5,
 )  # corners of a brick with 3 = 4 and 7 = 8, for outward normals in VTK
+UPWARD = np.eye(3)[Z]
 
 
 @dataclass(frozen=True)
@@ -36,13 +39,13 @@ class View:
     towards: np.ndarray
 
     @staticmethod
-    def from_direction(towards: np.ndarray, elevation: float) -> View:
+    def from_direction(towards: np.ndarray, elevation: float, upward: np.ndarray = UPWARD) -> View:
         """View from the side of `towards` (made horizontal), a little from above."""
-        level = np.array([towards[0], towards[1], 0.0])
+        level = horizontal(towards, upward)
         level /= np.linalg.norm(level)
         angle = np.radians(elevation)
-        out = np.cos(angle) * level + np.sin(angle) * np.array([0.0, 0.0, 1.0])
-        right = np.cross([0.0, 0.0, 1.0], level)
+        out = np.cos(angle) * level + np.sin(angle) * upward
+        right = np.cross(upward, level)
         return View(right, np.cross(out, right), out)
 
     def project(self, x: np.ndarray) -> np.ndarray:

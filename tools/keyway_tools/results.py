@@ -15,7 +15,9 @@ import h5py
 import numpy as np
 
 from .joint_faces import JointFaces, read_joint_faces
+from .program import DamagedFileError
 from .result_files import Table, as_array, as_file_word, load_json, natural, read_table
+from .upright import Z
 
 # Fields of *ENVELOPE and the names of their extremes in job.h5.
 ENVELOPE_NAMES = {
@@ -32,6 +34,7 @@ _SOLIDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
 
 KINDS = (".json", ".h5")  # of files that each job leaves
+GROUPS = {"mesh", "steps", "joints", "history"}  # in job.h5
 
 
 def find_jobs(folder: Path) -> list[str]:
@@ -164,7 +167,10 @@ class Results:
         """The fields, job.h5. Raises OSError, also while the run writes the file."""
         path = self.path(".h5")
         try:
-            return h5py.File(path, "r")
+            file = h5py.File(path, "r")
+            if not GROUPS & file.keys():
+                raise DamagedFileError(f"{path} holds no results of Keyway")
+            return file
         except FileNotFoundError:
             raise
         except BlockingIOError as error:
@@ -215,9 +221,25 @@ class Results:
         return np.flatnonzero(np.isin(self.element_types, _SOLIDS))
 
     @cached_property
+    def up_axis(self) -> int:
+        """The axis of the model that points up, from 0; z where job.h5 does not say."""
+        return int(self.file["mesh"].attrs.get("up", Z + 1)) - 1
+
+    @property
+    def upward(self) -> np.ndarray:
+        """The unit vector that points up."""
+        return np.eye(3)[self.up_axis]
+
+    @cached_property
     def dam(self) -> np.ndarray:
-        """Positions of the dam's elements: the materials that touch the upstream face, else all."""
+        """Positions of the dam's elements as the program takes them; all without a reservoir.
+
+        Files of older programs do not say: then the materials that touch the upstream face.
+        """
         solids = self.solids
+        if "faces/dam" in self.file:
+            found = solids[self.file["faces/dam"][:][solids] > 0]
+            return found if found.size else solids
         material = self.file["mesh/material"][:]
         wet = self.face_flags("upstream")[self.connectivity[solids]].sum(axis=1) >= 3
         found = np.unique(material[solids[wet]])

@@ -7,6 +7,7 @@ module hdf5_model
   use joint_readings, only: joint_record
   use hdf5_files, only: hdf5_file
   use file_system, only: link_name
+  use upward_axis, only: find_upward_axis
   implicit none
   private
   public :: write_model
@@ -25,6 +26,7 @@ contains
     call write_sets(file, '/sets/elements', model%element_sets, model%mesh%element_id)
     call write_surfaces(file, model)
     call file%make_group('/faces')
+    call file%put('/faces/dam', merge(1, 0, record%skin%is_dam))
     call file%put('/faces/upstream', merge(1, 0, record%skin%is_upstream))
     call file%put('/faces/downstream', merge(1, 0, record%skin%is_downstream))
     call file%make_group('/joints')
@@ -43,6 +45,7 @@ contains
       names(m) = model%materials(m)%name
     end do
     call file%make_group('/mesh')
+    call file%set('/mesh', 'up', find_upward_axis(model%loads))
     call file%put('/mesh/node_id', model%mesh%node_id)
     call file%put('/mesh/x', model%mesh%x)
     call file%put('/mesh/element_id', model%mesh%element_id)

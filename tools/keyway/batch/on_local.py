@@ -12,13 +12,25 @@ from keyway_tools.deck_runs import Record
 
 from .plan import Plan
 
+REQUESTS = (signal.SIGINT, signal.SIGTERM)  # to end the runs
+
+
+def interrupt(*_: object) -> None:
+    """Interrupts once: timeout sends its signal to the process and then to its group, too."""
+    for number in REQUESTS:
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
 
 def run_locally(
     plan: Plan, at_a_time: int, say: Callable[[str], None]
 ) -> tuple[list[Record], bool]:
     """Run all tasks, `at_a_time` at once; their records, and whether they were interrupted."""
     runner = plan.runner()
-    handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    usual = {number: signal.getsignal(number) for number in REQUESTS}
+    for number in REQUESTS:
+        if usual[number] != signal.SIG_IGN:  # as SIGINT in a background job of a shell
+            signal.signal(number, interrupt)
     done = 0
     with ThreadPoolExecutor(at_a_time) as pool:
         futures = [
@@ -35,5 +47,6 @@ def run_locally(
         except KeyboardInterrupt:
             print("batch: interrupted, ending the runs", file=sys.stderr)
             runner.end()
-    signal.signal(signal.SIGTERM, handler)
+    for number in REQUESTS:
+        signal.signal(number, usual[number])
     return [future.result() for future in futures], runner.is_ending

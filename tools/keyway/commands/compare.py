@@ -139,6 +139,8 @@ def compare(a: Path, b: Path, rules: Rules, job: str | None = None, table: str =
     if b.is_dir():
         if not a.is_dir():
             raise ValueError("B is a folder but A is not")
+        if table:
+            raise ValueError("--table belongs to a reference in CSV: two folders have all tables")
         return comparison.compare_folders(Results(a, job), Results(b, job), rules)
     if b.suffix.lower() not in comparison.READERS:
         raise ValueError(f"'{b.name}': expected a reference in CSV, JSON or HDF5")

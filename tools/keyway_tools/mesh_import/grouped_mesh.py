@@ -70,7 +70,7 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
         raise MeshError(f"--scale {scale:g}: expected a factor above 0")
     notes = notes_of_deck(path) if path.suffix.lower() == ".inp" else []
     mesh = read_mesh(path)
-    if np.ndim(mesh.points) != 2:
+    if np.ndim(mesh.points) != 2 or mesh.points.shape[1] > 3:
         raise MeshError(f"{path}: no nodes; expected a mesh of solids")
     refuse_cells(path, mesh)
     x = np.zeros((len(mesh.points), 3))

@@ -35,6 +35,8 @@ def motion_files(
     written as PREFIX_x.txt, PREFIX_y.txt, PREFIX_z.txt. Raises ValueError with the file, what is
     wrong and what is expected.
     """
+    if not files:
+        return [], dt
     missing = [file for file in files if not file.is_file()]
     if missing:
         raise ValueError(f"there is no motion file '{missing[0]}'")

@@ -21,6 +21,8 @@ from ..program import command_name, reason_of
 from ..results import Results
 from ..si_results import SiResults, Units
 
+START_OF_PAGE = 1000  # [bytes] in which a page says that it is HTML
+
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
@@ -52,6 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Write the pages and print their names."""
     chosen = parse(arguments)
     try:
+        refuse_other_file(chosen.output)
         jobs = [Results(folder, chosen.job).job for folder in chosen.results]
         found = [
             SiResults(folder, job, chosen.units)
@@ -66,6 +69,16 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     pages = [found] if len(found) == 2 else [[results] for results in found]
     return max(write(runs, chosen) for runs in pages)
+
+
+def refuse_other_file(output: Path | None) -> None:
+    """Raises ValueError where the page would replace a file that is no page, as the deck."""
+    if output is None or not output.is_file():
+        return
+    with output.open("rb") as file:
+        start = file.read(START_OF_PAGE).lower()
+    if start.strip() and b"<html" not in start and b"<!doctype html" not in start:
+        raise ValueError(f"{output} exists and is no HTML page; expected the name of a new file")
 
 
 def write(runs: list[SiResults], chosen: argparse.Namespace) -> int:

@@ -124,10 +124,12 @@
       });
       const margin = .1 * Math.max(...range.map(([low, high]) => high - low));
       // The same scale along all axes; plotly's own choice enlarges thin bodies out of sight.
-      const [rx, ry, rz] = range.map(([low, high]) => high - low + 2 * margin);
-      const scale = Math.min(1.5 / rz, 2.2 / Math.max(rx, ry));
+      const sizes = range.map(([low, high]) => high - low + 2 * margin);
+      const scale = Math.min(...sizes.map((size, k) => (k === this.scene.up ? 1.5 : 2.2) / size));
+      const [rx, ry, rz] = sizes;
+      const up = Object.fromEntries([..."xyz"].map((name, k) => [name, Number(k === this.scene.up)]));
       const axis = k => ({ title: { text: `${"xyz"[k]} [m]` }, range: [range[k][0] - margin, range[k][1] + margin], autorange: false, backgroundcolor: "#fafafa", gridcolor: "#e5e5e5" });
-      return { margin: { l: 0, r: 0, t: 0, b: 0 }, uirevision: "kept", showlegend: false, scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: scale * rx, y: scale * ry, z: scale * rz }, camera: { eye: this.scene.eye, projection: { type: "orthographic" } } } };
+      return { margin: { l: 0, r: 0, t: 0, b: 0 }, uirevision: "kept", showlegend: false, scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: scale * rx, y: scale * ry, z: scale * rz }, camera: { eye: this.scene.eye, up, projection: { type: "orthographic" } } } };
     }
 
     draw(choice) {

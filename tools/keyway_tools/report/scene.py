@@ -30,6 +30,7 @@ def scene(results: SiResults, scales: Scales) -> dict[str, Any]:
         "x": packed(results.x[nodes]),
         "skins": [_skin(skin, nodes) for skin in skins],
         "eye": _eye(faces),
+        "up": results.up_axis,
         "fields": _fields(results, faces, nodes, scales),
         "states": _states(results, nodes, faces.size, scales, stage_of_step),
         "modes": _modes(results, nodes, faces.size),
@@ -42,7 +43,7 @@ def _eye(faces: Faces) -> dict[str, float]:
     view = next(iter(faces.views.values()))
     eye = 1.2 * view.towards
     if len(faces.views) > 1:
-        eye = eye + 0.5 * view.right + np.array([0.0, 0.0, 0.45])
+        eye = eye + 0.5 * view.right + 0.45 * faces.results.upward
     return dict(zip("xyz", (float(v) for v in eye), strict=True))
 
 
@@ -110,7 +111,7 @@ def _fields(
         limits = scales.limits(name, values[faces.nodes])
         found.append({
             "name": name,
-            "label": f"{shown.label} over step {kept[-1].name.title()}",
+            "label": f"{shown.label} over step {kept[-1].name}",
             "unit": shown.unit,
             "values": packed(np.nan_to_num(shown.scale * values[nodes])),
             "ends": limits.ends,
@@ -196,7 +197,7 @@ def _joints(results: SiResults, scales: Scales) -> dict[str, Any] | None:
         "x": packed(np.vstack(x)),
         "triangles": packed(np.vstack(triangles), "i4"),
         "values": packed(np.concatenate(values)),
-        "label": f"{FIELDS['OPENING'].label} over step {kept[-1].name.title()}",
+        "label": f"{FIELDS['OPENING'].label} over step {kept[-1].name}",
         "ends": limits.ends,
         "colours": colours_of(FIELDS["OPENING"].colours, limits.bands),
     }

@@ -91,6 +91,7 @@ class Deck:
 
     cards: list[Card]
     files: dict[str, str] = field(default_factory=dict)  # texts that stand beside the deck
+    sources: set[Path] = field(default_factory=set, compare=False)  # files that it was read from
 
     def copy(self) -> Deck:
         return deepcopy(self)
@@ -144,12 +145,15 @@ def read_deck(path: Path) -> Deck:
 
     Raises OSError for a file that cannot be read.
     """
-    return Deck(list(_cards_of_lines(_lines_of(path.resolve()))))
+    sources: set[Path] = set()
+    return Deck(list(_cards_of_lines(_lines_of(path.resolve(), sources))), sources=sources)
 
 
-def _lines_of(path: Path) -> Iterator[tuple[str, Path]]:
+def _lines_of(path: Path, sources: set[Path]) -> Iterator[tuple[str, Path]]:
     """The lines of a file without comments, with the folder of their file. Those of an included
-    file stand in place of *INCLUDE, also among the data of a keyword."""
+    file stand in place of *INCLUDE, also among the data of a keyword. Adds to `sources` the files.
+    """
+    sources.add(path)
     include, is_open = None, False
     for line in map(str.strip, path.read_text(encoding="utf-8-sig", errors="replace").splitlines()):
         if not line or line.startswith("**"):
@@ -158,7 +162,7 @@ def _lines_of(path: Path) -> Iterator[tuple[str, Path]]:
             is_open = _add_parameters(include, line)
             continue
         if include:
-            yield from _lines_of(_place_of(include, path.parent))
+            yield from _lines_of(_place_of(include, path.parent), sources)
             include = None
         keyword, rest = _head_of(line)
         if keyword == "INCLUDE":
@@ -167,7 +171,7 @@ def _lines_of(path: Path) -> Iterator[tuple[str, Path]]:
         else:
             yield line, path.parent
     if include:
-        yield from _lines_of(_place_of(include, path.parent))
+        yield from _lines_of(_place_of(include, path.parent), sources)
 
 
 def _head_of(line: str) -> tuple[str, str]:

@@ -11,8 +11,10 @@ import pyvista as pv
 from ..mesh_data import BRICK_FACES
 from ..study.deck_cards import Deck, fields_of, read_deck
 from ..study.mesh_sets import MeshSets, element_rows, read_sets
+from ..upright import axes_with_up_last
 
 FACE_NAMES = [f"S{number}" for number in range(1, len(BRICK_FACES) + 1)]
+TALLEST = 500.0  # [m]; the tallest dams have 335 m
 CLOSE = 1e-9  # of the dam's size: round-off of coordinates
 
 
@@ -21,11 +23,13 @@ class Dam:
     """Nodes of the dam by their numbers in the deck; positions count from 0."""
 
     numbers: np.ndarray  # (nodes)
-    x: np.ndarray  # (nodes, 3) [m]
+    x: np.ndarray  # (nodes, 3) [m]; the last axis points up
     bricks: np.ndarray  # (bricks, 8) positions
     upstream: list[list[int]]  # faces: positions of three or four nodes
     downstream: list[list[int]]
     others: np.ndarray  # numbers of all other nodes of the deck
+    sources: set[Path]  # files of the deck
+    axes: list[int]  # of the deck, from 0, for the axes of x
 
 
 @dataclass(frozen=True)
@@ -38,8 +42,11 @@ class Place:
     z_downstream: np.ndarray
 
 
-def read_dam(path: Path, dam: str, upstream: str, downstream: str) -> Dam:
-    """The dam of a deck by the names of its elements and of its faces. Raises ValueError."""
+def read_dam(path: Path, dam: str, upstream: str, downstream: str, up: int | None = None) -> Dam:
+    """The dam of a deck by the names of its elements and of its faces. Raises ValueError.
+
+    `up` is the axis 1..3 that points up; None: as in *RESERVOIR.
+    """
     if not path.is_file():
         raise ValueError(f"there is no deck '{path}'")
     deck = read_deck(path)
@@ -63,13 +70,30 @@ def read_dam(path: Path, dam: str, upstream: str, downstream: str) -> Dam:
         raise ValueError(
             f"{path}: {len(common)} faces belong to {names}; expected the two opposite faces"
         )
+    axes = axes_with_up_last((up or _up_of(path, deck)) - 1)
+    x = np.array([sets.nodes[int(number)] for number in numbers])[:, axes]
+    height = float(np.ptp(x[:, -1]))
+    if height > TALLEST:
+        what = f"the dam is {height:.5g} high along {'xyz'[axes[-1]]}"
+        raise ValueError(f"{path}: {what}; expected lengths in m, and no dam above {TALLEST:g} m")
     return Dam(
         numbers,
-        np.array([sets.nodes[int(number)] for number in numbers]),
+        x,
         np.array([[position[n] for n in nodes] for nodes in elements.values()]),
         *([[position[n] for n in dict.fromkeys(face)] for face in own] for own in faces),
         np.array(sorted(set(sets.nodes) - set(position)), dtype=int),
+        deck.sources,
+        axes,
     )
+
+
+def _up_of(path: Path, deck: Deck) -> int:
+    """UP of the first reservoir, 3 where there is none or none is given. Raises ValueError."""
+    card = next(deck.of("RESERVOIR"), None)
+    word = (card.value("UP") if card else "") or "3"
+    if word not in ("1", "2", "3"):
+        raise ValueError(f"{path}: *RESERVOIR: UP={word}; expected 1, 2 or 3")
+    return int(word)
 
 
 def _list(names) -> str:
@@ -131,7 +155,7 @@ def nodes_without_thickness(dam: Dam, place: Place) -> np.ndarray:
     found = np.flatnonzero(place.thickness <= CLOSE * size)
     low = found[dam.x[found, 2] < dam.x[:, 2].max() - CLOSE * size]
     if len(low):
-        x, y, z = dam.x[low[0]]
+        x, y, z = dam.x[low[0], np.argsort(dam.axes)]
         raise ValueError(
             f"{len(low)} nodes lie on both faces, as node {dam.numbers[low[0]]} at ({x:.5g}, "
             f"{y:.5g}, {z:.5g}) m: the dam has no thickness there; expected --upstream and "
