@@ -6,6 +6,7 @@
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -204,8 +205,23 @@ static void limit_memory(void)
   setrlimit(RLIMIT_DATA, &now);
 }
 
+/* Vectors of a large model come and go in each increment. The library would give their pages back to
+ * the system each time, and the system would clear them anew. */
+static void keep_pages(void)
+{
+#ifdef __GLIBC__
+  enum { largest_kept = 32 << 20, most_kept = 64 << 20 };
+  mallopt(M_MMAP_THRESHOLD, largest_kept);
+  mallopt(M_TRIM_THRESHOLD, most_kept);
+#endif
+}
+
 /* The first call of the program. */
-void keyway_prepare_process(void) { open_standard_files(); }
+void keyway_prepare_process(void)
+{
+  open_standard_files();
+  keep_pages();
+}
 
 static _Noreturn void end_without_blas(int signal_number)
 {

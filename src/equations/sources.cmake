@@ -17,6 +17,7 @@ set(sources
   nested_dissection.f90
   products/column_products.c
   products/column_products.f90
+  products/pair_product.f90
   solver_catalogue.f90
   solver_cholmod.f90
   solver_petsc.f90

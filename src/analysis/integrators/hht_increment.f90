@@ -170,10 +170,9 @@ contains
       if (allocated(task%support_a)) new%a(n + 1:) = task%support_a(n + 1:)
       call multiply(system%mass_pattern, system%mass_entries, new%a, new%inertia)
       new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia
-      call system%find_damping_force(new%a, new%viscous_rate)
+      call system%find_rate_forces(new%q, new%a, new%inertia, new%elastic, new%viscous_rate)
       new%viscous = old%viscous + rest*old%viscous_rate + scheme%gamma*dt*new%viscous_rate
       if (allocated(task%support_v)) call move_supports(system, scheme, task%support_v, old, new)
-      call system%find_elastic(new%q, new%elastic)
       call solids%set_internal(new)
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)

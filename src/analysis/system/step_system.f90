@@ -15,14 +15,14 @@ module step_system
   use matrix_pattern, only: pattern, drop_zeros
   use matrix_rows, only: lay_out_rows
   use pattern_builder, only: list_cells, build_pattern
-  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_damping, &
-                               assemble_origins
-  use damping_rayleigh, only: rayleigh_coefficients
-  use guest_list, only: add_guest_matrices, any_has_matrix, guests_of_step
-  use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
+  use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_origins
+  use guest_list, only: add_guest_matrices, guests_of_step
+  use guest_type, only: guest_reference, mass_matrix, stiffness_matrix
   use joint_operator, only: jump_operator, build_jump_operator
   use joint_separators, only: find_separators, fits_the_end
+  use pair_product, only: multiply_pair
   use ranks, only: add_over_ranks
+  use step_damping, only: build_damping_sum, damping_sum
   use step_loads, only: load_group, support, gather_loads, gather_supports
   use run_ledger, only: ledger
   implicit none
@@ -46,14 +46,15 @@ module step_system
     real(rk), allocatable :: mass(:) !< values of M, added mass included; size 0 in a static step
     type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
-    real(rk), allocatable :: damping(:) !< values of C; size 0 where nothing damps
+    type(damping_sum) :: damping !< C, but for modal damping
     !> (num_free, modes) U of modal damping: C has the term U U^T; no columns without it
     real(rk), allocatable :: modal(:, :)
     type(jump_operator) :: operator
     type(load_group), allocatable :: groups(:)
     type(support), allocatable :: supports(:)
   contains
-    procedure :: find_damping_force, find_damping_forces, add_damping, find_elastic, stored_energy
+    procedure :: find_damping_force, find_damping_forces, add_damping, find_rate_forces
+    procedure :: find_elastic, stored_energy
     procedure :: add_warming, set_thermal
   end type dam_system
 
@@ -64,29 +65,69 @@ contains
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: v(:) !< (num_total)
     real(rk), intent(out) :: force(:) !< (num_total)
-    integer :: k
-    if (size(self%damping) > 0) then
-      call multiply(self%matrix, self%damping, v, force)
-    else
-      force = 0.0_rk
+    real(rk), allocatable :: product(:)
+    force = 0.0_rk
+    if (self%damping%of_stiffness > 0.0_rk) then
+      call multiply(self%matrix, self%stiffness, v, force)
+      force = self%damping%of_stiffness*force
     end if
+    if (self%damping%of_mass > 0.0_rk) then
+      allocate (product(size(v)))
+      call multiply(self%mass_pattern, self%mass_entries, v, product)
+      force = force + self%damping%of_mass*product
+    end if
+    call self%damping%add_rest_force(v, force)
+    call add_modal_force(self, v, force)
+  end subroutine find_damping_force
+
+  !> The force of the undamaged elements at q, and C a. The stiffness matrix is read once for both.
+  subroutine find_rate_forces(self, q, a, inertia, elastic, viscous_rate)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in) :: q(:), a(:) !< (num_total) [m], [m/s2]
+    real(rk), intent(in) :: inertia(:) !< (num_total) M a [N]
+    real(rk), contiguous, intent(out) :: elastic(:), viscous_rate(:) !< (num_total) [N], [N/s]
+    if (self%damping%of_stiffness > 0.0_rk) then
+      call multiply_pair(self%matrix, self%stiffness, q, a, elastic, viscous_rate)
+      viscous_rate = self%damping%of_stiffness*viscous_rate + self%damping%of_mass*inertia
+    else
+      call multiply(self%matrix, self%stiffness, q, elastic)
+      viscous_rate = self%damping%of_mass*inertia
+    end if
+    call subtract_origins(self, elastic)
+    call self%damping%add_rest_force(a, viscous_rate)
+    call add_modal_force(self, a, viscous_rate)
+  end subroutine find_rate_forces
+
+  !> Adds the force of modal damping.
+  subroutine add_modal_force(self, v, force)
+    type(dam_system), intent(in) :: self
+    real(rk), intent(in) :: v(:) !< (num_total)
+    real(rk), intent(inout) :: force(:) !< (num_total)
+    integer :: k
     do k = 1, size(self%modal, 2)
       associate (u => self%modal(:, k), n => size(self%modal, 1))
         force(:n) = force(:n) + dot(u, v(:n))*u
       end associate
     end do
-  end subroutine find_damping_force
+  end subroutine add_modal_force
 
   !> C v for many velocities, over the free unknowns; prescribed ones are at rest.
   subroutine find_damping_forces(self, v, force)
     class(dam_system), intent(in) :: self
     real(rk), intent(in), contiguous :: v(:, :) !< (num_free, velocities)
     real(rk), intent(out) :: force(:, :) !< (num_free, velocities)
-    if (size(self%damping) > 0) then
-      call multiply_columns(self%matrix, self%damping, v, force)
-    else
-      force = 0.0_rk
+    real(rk), allocatable :: product(:, :)
+    force = 0.0_rk
+    if (self%damping%of_stiffness > 0.0_rk) then
+      call multiply_columns(self%matrix, self%stiffness, v, force)
+      force = self%damping%of_stiffness*force
     end if
+    if (self%damping%of_mass > 0.0_rk) then
+      allocate (product, mold=force)
+      call multiply_columns(self%mass_pattern, self%mass_entries, v, product)
+      force = force + self%damping%of_mass*product
+    end if
+    call self%damping%add_rest_forces(v, force)
     if (size(self%modal, 2) > 0) then
       force = force + times(self%modal, transposed_times(self%modal, v))
     end if
@@ -98,9 +139,16 @@ contains
     real(rk), intent(in) :: q(:) !< (num_total) [m]
     real(rk), intent(out) :: force(:) !< (num_total) [N]
     call multiply(self%matrix, self%stiffness, q, force)
+    call subtract_origins(self, force)
+  end subroutine find_elastic
+
+  !> Takes the forces of origins and of thermal strains away.
+  subroutine subtract_origins(self, force)
+    type(dam_system), intent(in) :: self
+    real(rk), intent(inout) :: force(:) !< (num_total) [N]
     if (allocated(self%origin_force)) force = force - self%origin_force
     if (allocated(self%thermal_force)) force = force - self%thermal_force
-  end subroutine find_elastic
+  end subroutine subtract_origins
 
   !> Adds the change of the thermal force over the increment to forces that have the elastic force
   !> of its start.
@@ -143,7 +191,7 @@ contains
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: factor
     real(rk), intent(inout) :: values(:)
-    if (size(self%damping) > 0) values = values + factor*self%damping
+    call self%damping%add_values(factor, self%mass, self%stiffness, values)
   end subroutine add_damping
 
   !> Numbering, pattern, stiffness of solids and guests, joints.
@@ -174,7 +222,7 @@ contains
     if (allocated(error)) return
     call add_guest_matrices(guests, stiffness_matrix, model, system%numbers, system%matrix, &
                             system%stiffness, costs)
-    allocate (system%mass(0), system%damping(0), system%diagonal(system%matrix%num_total))
+    allocate (system%mass(0), system%diagonal(system%matrix%num_total))
     allocate (system%modal(system%matrix%num_free, 0))
     call diagonal(system%matrix, system%stiffness, system%diagonal)
     call costs%stop('assemble structure')
@@ -267,23 +315,9 @@ contains
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
     type(guest_reference), allocatable :: guests(:)
-    real(rk) :: alpha, beta
-    logical :: is_rayleigh
-    alpha = 0.0_rk
-    beta = 0.0_rk
-    if (plan%damping%ratio > 0.0_rk) then
-      call rayleigh_coefficients(plan%damping%ratio, plan%damping%f1, plan%damping%f2, alpha, beta)
-    end if
     call guests_of_step(model, plan, guests)
-    is_rayleigh = alpha + beta + sum(abs(model%materials%alpha) + abs(model%materials%beta)) &
-                  > 0.0_rk
-    if (.not. (is_rayleigh .or. any_has_matrix(guests, damping_matrix))) return
-    call costs%start('assemble', 'damping', 'solver')
-    call assemble_damping(model, system%numbers, alpha, beta, system%matrix, system%damping, error)
-    if (allocated(error)) return
-    call add_guest_matrices(guests, damping_matrix, model, system%numbers, system%matrix, &
-                            system%damping, costs)
-    call costs%stop('assemble damping')
+    call build_damping_sum(model, plan, guests, system%numbers, system%matrix, system%damping, &
+                           costs, error)
   end subroutine build_damping
 
   !> Load patterns and supports. Base motion needs the mass, so `build_inertia` comes first.
