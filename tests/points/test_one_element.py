@@ -90,3 +90,18 @@ def test_cycles(keyway, tangent):
     scale = np.abs(expected).max()
     # The iteration's residual, 1e-9, on a point with a damage of 0.9.
     assert found == pytest.approx(np.outer(expected, np.ones(8)), abs=1e-6 * scale)
+
+
+@pytest.mark.parametrize("tangent", ["AUTO", "CONSISTENT"])
+@pytest.mark.parametrize("recovery", ["SIGN", "LEE-FENVES"])
+def test_energy_up_to_cracking(keyway, recovery, tangent):
+    """ENER = S:E/2 in points that are about to crack, and have not (round-off of S:E)."""
+    material = Material(recovery=recovery)
+    pulled = cube_deck(material, [1.2 * TABLE_1[0, 0] / material.young], 60, tangent=tangent)
+    sheared = pulled.replace("*NSET, NSET=FLOOR", "*NSET, NSET=NORTH\n3, 4, 7, 8\n*NSET, NSET=FLOOR")
+    sheared = sheared.replace("EAST, 1, 1, 1.\n", "EAST, 1, 1, 1.\nNORTH, 2, 2, -1.\n")
+    table = keyway(sheared.replace("S, DAMAGET, DAMAGEC", "S, E, ENER, PE")).csv("el_BODY")
+    elastic = table["PE11"] == 0.0
+    assert 0.5 < np.mean(elastic) < 0.95
+    energy = 0.5 * sum(table["S" + part] * table["E" + part] for part in ("11", "22", "33", "12"))
+    assert table["ENER"][elastic] == pytest.approx(energy[elastic], rel=1e-9)

@@ -175,6 +175,34 @@ def test_energy_with_water_in_a_shaken_joint(keyway, profile, ground_counts) -> 
     assert run.json["joints"]["BED"]["opening"]["upstream"]["value"] > 1e-4
 
 
+@pytest.mark.parametrize("profile", ["LINEAR", "OPEN"])
+def test_rocking_in_parts(keyway, profile) -> None:
+    """Steps in a row are the step in one piece: water that follows the opening of the last
+    increment of a step comes in the first one of the next, not at once."""
+    section = Section(
+        counts=(10, 5),
+        crest=1.5,
+        young=2e10,
+        law=f"KN=1e10, KT=1e10, FRICTION=0.8, UPLIFT=LAKE, PROFILE={profile}",
+    )
+    time = np.arange(0.0, 0.401, 0.01)
+    shaking = amplitude("QUAKE", time + 1.0, 3.0 * np.sin(2.0 * np.pi * 4.0 * time))
+    shaking = shaking.replace("NAME=QUAKE", "NAME=QUAKE, TIME=TOTAL TIME")
+    runs = {}
+    for parts in (1, 8):
+        steps = static(weight() + lake(LEVEL) + OUTPUT, "0.25, 1.")
+        steps += parts * dynamic("*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n", 0.005, 0.4 / parts)
+        table = keyway(section.deck(shaking + steps), name=f"in_{parts}").csv("joint_BED")
+        moving = (table["step"] > 1) & (table["increment"] > 0)
+        runs[parts] = {name: table[name][moving] for name in ("opening", "tn")}
+    opening = runs[1]["opening"].max()
+    assert opening > 1e-4
+    # Round-off in the sums of times, in a motion that opens and closes points.
+    assert runs[8]["opening"] == pytest.approx(runs[1]["opening"], abs=1e-7 * opening)
+    size = np.abs(runs[1]["tn"]).max()
+    assert runs[8]["tn"] == pytest.approx(runs[1]["tn"], abs=1e-7 * size)
+
+
 # --- code_aster SSNP142, modelling A: a section 5 m wide below and 1.5 m above (its geometry file
 # ssnp142f.datg), 10 m high, on 5 m of ground 15 m wide, everything 3e12 Pa.
 ASTER = Section(

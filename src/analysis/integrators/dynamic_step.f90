@@ -9,7 +9,7 @@ module dynamic_step
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
   use modal_damping, only: build_modal_damping
-  use joint_water, only: update_uplift
+  use joint_water, only: resume_uplift, update_uplift
   use step_equilibrium, only: make_equilibrium
   use guest_forces, only: has_histories
   use step_system, only: dam_system, build_structure, build_inertia, build_damping, &
@@ -123,7 +123,11 @@ contains
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     associate (own => now%motion)
       goes_on = has_same_unknowns(last, model, now%step, own)
-      call update_uplift(model, system%operator, now%joints, system%groups, costs, has_changed)
+      if (goes_on) then
+        call resume_uplift(model, system%operator, now%joints, system%groups, costs)
+      else
+        call update_uplift(model, system%operator, now%joints, system%groups, costs, has_changed)
+      end if
       call external_force(system%groups, model%amplitudes, when, own%external)
       call find_support_rates(model, system, when, plan%first_increment, own%v, own%a)
       call solids%start_lost_damping(model, system, plan, last, goes_on, now)

@@ -13,7 +13,7 @@ module joint_water
   use run_ledger, only: ledger
   implicit none
   private
-  public :: update_uplift, record_uplift, press_grout
+  public :: update_uplift, resume_uplift, record_uplift, press_grout
 
 contains
 
@@ -25,26 +25,63 @@ contains
     type(load_group), intent(inout) :: groups(:)
     type(ledger), intent(in) :: costs
     logical, intent(out) :: has_changed !< a force has
-    real(rk), allocatable :: pressure(:)
+    logical :: changes
     integer :: g
     has_changed = .false.
     do g = 1, size(groups)
       if (groups(g)%uplift == 0) cycle
       associate (water => model%loads(groups(g)%uplift)%item)
-        call costs%start('update', water%name, water%kind)
-        allocate (pressure(size(states(water%wet_joint)%status)))
-        call water%joint_pressure(states(water%wet_joint)%status == state_open, pressure)
-        if (.not. allocated(groups(g)%pressure)) groups(g)%pressure = 0.0_rk*pressure
-        if (any(abs(pressure - groups(g)%pressure) > 0.0_rk)) then
-          has_changed = .true.
-          groups(g)%force = 0.0_rk
-          call push_faces(operator, water%wet_joint, pressure, groups(g)%force)
-        end if
-        call costs%stop()
+        call set_uplift(model, operator, states(water%wet_joint)%status == state_open, costs, &
+                        groups(g), changes)
+        has_changed = has_changed .or. changes
       end associate
-      call move_alloc(pressure, groups(g)%pressure)
     end do
   end subroutine update_uplift
+
+  !> The uplift of the last increment, at the start of a step in which the motion goes on: the water
+  !> of points that have opened or closed in it comes in the next increment, as within a step.
+  subroutine resume_uplift(model, operator, states, groups, costs)
+    type(problem), intent(in) :: model
+    type(jump_operator), intent(in) :: operator
+    type(joint_state), intent(in) :: states(:) !< with the water of the last increment, if any
+    type(load_group), intent(inout) :: groups(:)
+    type(ledger), intent(in) :: costs
+    logical, allocatable :: lets_water_in(:)
+    logical :: changes
+    integer :: g
+    do g = 1, size(groups)
+      if (groups(g)%uplift == 0) cycle
+      associate (now => states(model%loads(groups(g)%uplift)%item%wet_joint))
+        lets_water_in = now%status == state_open
+        if (allocated(now%water)) lets_water_in = abs(now%water) > 0.0_rk
+        call set_uplift(model, operator, lets_water_in, costs, groups(g), changes)
+      end associate
+    end do
+  end subroutine resume_uplift
+
+  !> The pressure of one load, and its forces.
+  subroutine set_uplift(model, operator, is_open, costs, group, has_changed)
+    type(problem), intent(in) :: model
+    type(jump_operator), intent(in) :: operator
+    logical, intent(in) :: is_open(:) !< (points of the joint)
+    type(ledger), intent(in) :: costs
+    type(load_group), intent(inout) :: group
+    logical, intent(out) :: has_changed
+    real(rk), allocatable :: pressure(:)
+    associate (water => model%loads(group%uplift)%item)
+      call costs%start('update', water%name, water%kind)
+      allocate (pressure(size(is_open)))
+      call water%joint_pressure(is_open, pressure)
+      if (.not. allocated(group%pressure)) group%pressure = 0.0_rk*pressure
+      has_changed = any(abs(pressure - group%pressure) > 0.0_rk)
+      if (has_changed) then
+        group%force = 0.0_rk
+        call push_faces(operator, water%wet_joint, pressure, group%force)
+      end if
+      call costs%stop()
+    end associate
+    call move_alloc(pressure, group%pressure)
+  end subroutine set_uplift
 
   !> The grout of a step presses the faces apart, until the end of the step where it hardens.
   subroutine press_grout(plan, operator, num_unknowns, states, groups)

@@ -81,7 +81,7 @@ contains
     type(placed_curves) :: placed
     real(rk), dimension(points%num_points) :: factor, stored
     real(rk) :: d(6, 6)
-    logical :: is_plain, has_answer(points%num_points)
+    logical :: is_plain, has_answer(points%num_points), has_energy(points%num_points)
     integer :: i
     if (time%is_updated .and. has_plain_stress(self%model)) then
       call add_energies(self%model, points, old, new)
@@ -107,6 +107,7 @@ contains
       new%energy(stored_energy, i) = stored(i)
       if (motion%wants_tangent) tangent(:, :, i) = d
     end do
+    has_energy = has_answer .or. motion%wants_energy
     is_plain = has_plain_stress(self%model) &
                .and. .not. (motion%wants_tangent .or. motion%wants_energy)
     if (is_plain) call find_plain_stresses(self%model, points, old, placed, new, has_answer)
@@ -121,9 +122,21 @@ contains
                        as_text(maxval(abs(new%strain(:, i) - old%strain(:, i))))// &
                        ' in the increment'
     end do
+    call store_elastic_energies(has_energy, new)
   end subroutine update
 
-  !> Energies of points whose stress and history are known.
+  !> Energies of points that have turned out to be elastic: those of others are completed later.
+  pure subroutine store_elastic_energies(has_energy, new)
+    logical, intent(in) :: has_energy(:) !< (points)
+    type(point_state), intent(inout) :: new
+    integer :: i
+    do i = 1, size(has_energy)
+      if (has_energy(i) .or. .not. new%is_elastic(i)) cycle
+      new%energy(stored_energy, i) = 0.5_rk*dot_product(new%stress(:, i), new%strain(:, i))
+    end do
+  end subroutine store_elastic_energies
+
+  !> Energies of points that have yielded or cracked, and whose stress and history are known.
   pure subroutine add_energies(model, points, old, new)
     type(concrete_model), intent(in) :: model
     type(point_set), intent(in) :: points
@@ -135,10 +148,7 @@ contains
     type(placed_curves) :: placed
     integer :: i
     do i = 1, points%num_points
-      if (new%is_elastic(i)) then
-        new%energy(stored_energy, i) = 0.5_rk*dot_product(new%stress(:, i), new%strain(:, i))
-        cycle
-      end if
+      if (new%is_elastic(i)) cycle
       motion%before = old%strain(:, i)
       motion%strain = new%strain(:, i)
       motion%edges = points%edges(:, :, i)
