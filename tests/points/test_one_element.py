@@ -98,7 +98,9 @@ def test_energy_up_to_cracking(keyway, recovery, tangent):
     """ENER = S:E/2 in points that are about to crack, and have not (round-off of S:E)."""
     material = Material(recovery=recovery)
     pulled = cube_deck(material, [1.2 * TABLE_1[0, 0] / material.young], 60, tangent=tangent)
-    sheared = pulled.replace("*NSET, NSET=FLOOR", "*NSET, NSET=NORTH\n3, 4, 7, 8\n*NSET, NSET=FLOOR")
+    sheared = pulled.replace(
+        "*NSET, NSET=FLOOR", "*NSET, NSET=NORTH\n3, 4, 7, 8\n*NSET, NSET=FLOOR"
+    )
     sheared = sheared.replace("EAST, 1, 1, 1.\n", "EAST, 1, 1, 1.\nNORTH, 2, 2, -1.\n")
     table = keyway(sheared.replace("S, DAMAGET, DAMAGEC", "S, E, ENER, PE")).csv("el_BODY")
     elastic = table["PE11"] == 0.0

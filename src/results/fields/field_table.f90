@@ -73,7 +73,7 @@ contains
                name='RF', meaning='reaction', endings=vector, unit='N', place=at_nodes, &
                remark='Zero where no degree of freedom is prescribed. In a dynamic step RF '// &
                'balances the stresses and tractions at the end of an increment, A those that '// &
-               'joints and RECOVERY=ENERGY carry on (theory.md, 7.3 and 12.7).', &
+               'joints and RECOVERY=ENERGY carry on (theory.md, (7.3) and (12.7)).', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=reaction, &
                is_there=has_reactions))
     call enter(rows, last, result_field( &
