@@ -147,8 +147,8 @@ def newmark_block(time: np.ndarray, base: np.ndarray, friction: float) -> float:
 
 @BLOCKS.case(
     "stick-slip ratchet",
-    "a base that jerks one way and returns slowly, twenty times: the block walks along",
-    "difference of the slip from that of a rigid block, over it",
+    "a base that jerks one way and returns slowly, twenty times: the block slides on each time",
+    "difference of the slip from that of a rigid block, over the latter",
     2e-2,
 )
 def ratchet(keyway):
@@ -193,7 +193,7 @@ def rocking(keyway):
 @BLOCKS.case(
     "floating block",
     "a block that only a gap of 5 mm separates from its bed falls, and bounces for 0.5 s",
-    "energy that nothing supplies, and error of the free fall, over the largest",
+    "created energy over the largest energy; error of the free fall",
     1e-6,
 )
 def floating(keyway):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from itertools import groupby
 from pathlib import Path
 
 from block_cases import BLOCKS
@@ -17,14 +18,16 @@ CHAPTERS = (BLOCKS, CROSSINGS, CONCRETE, SOLIDS, DAMS)
 CASES = [case for chapter in CHAPTERS for case in chapter.cases]
 HEAD = """# Hard cases
 
-What is hard for a program of jointed and cracking dams, and how this one does. `tests/hard` holds
-the decks; `python tools/make_hard_cases.py` runs them and writes this page. A case *holds* where
-its runs end and its number is at most the limit. Cases with (full) are run by `tools/test --full`
-only.
+What is hard for a program that computes dams with joints and cracks, and does Keyway solve it? Each
+case is judged by one number. The case *holds* if its runs end and its number is at most the limit.
+Below each table a list says what is hard in a case, and what its number means.
 
-Iterations are the most in one increment; cuts are all cut-backs. Times are seconds of all runs of
-the case on one thread. Number, iterations, cuts and time depend on the machine and on the kernels
-of its BLAS.
+- *Iterations* are the most in one increment, *cuts* are all cut-backs.
+- *Time* is the seconds of all runs of the case on one thread.
+- Number, iterations, cuts and time depend on the machine and on the kernels of its BLAS.
+- `tools/test --full` alone runs the cases with (full).
+
+The decks are in `tests/hard`; `python tools/make_hard_cases.py` runs them and writes this page.
 """
 COLUMNS = "| case | unknowns | result | number | limit | iterations | cuts | time |"
 HOLDS, FAILS, NOT_RUN = "holds", "does not hold", "not run yet"
@@ -34,12 +37,19 @@ def full_name(case: HardCase) -> str:
     return case.name + (" (full)" if case.full else "")
 
 
-def meaning_of(case: HardCase) -> str:
-    """What is hard and what the number is, as an item of a list."""
-    text = f"*{case.name}*: {case.hard}. Number: {case.criterion}."
-    if case.waits_for:
-        text += f" Waits for: {case.waits_for}."
+def meaning_of(cases: list[HardCase]) -> str:
+    """What is hard in cases that differ by a value alone, and what the number is: an item."""
+    names = "; ".join(f"*{case.name}*" for case in cases)
+    text = f"{names}: {cases[0].hard}. Number: {cases[0].criterion}."
+    if cases[0].waits_for:
+        text += f" Waits for: {cases[0].waits_for}."
     return textwrap.fill(text, 118, initial_indent="- ", subsequent_indent="  ")
+
+
+def meanings_of(cases: tuple[HardCase, ...]) -> list[str]:
+    """One item for neighbours with the same description."""
+    groups = groupby(cases, key=lambda case: (case.hard, case.criterion, case.waits_for))
+    return [meaning_of(list(group)) for _, group in groups]
 
 
 def row_of(case: HardCase, finding: Finding | None) -> str:
@@ -71,5 +81,5 @@ def page_of(rows: dict[str, str]) -> str:
     for chapter in CHAPTERS:
         text += f"\n## {chapter.title}\n\n{COLUMNS}\n|{'---|' * 8}\n"
         text += "".join(rows.get(case.name, empty_row(case)) + "\n" for case in chapter.cases)
-        text += "\n" + "".join(meaning_of(case) + "\n" for case in chapter.cases)
+        text += "\n" + "".join(item + "\n" for item in meanings_of(chapter.cases))
     return text

@@ -52,7 +52,7 @@ def strong_motion(keyway):
 @DAMS.case(
     "cracking dam, RECOVERY=ENERGY",
     "Table 1, rock, no joints, no damping, 0.7 g, increments of 0.01 s with ALPHA=0",
-    "energy that nothing supplies, over the largest; error of the energy balance",
+    "created energy over the largest energy; error of the energy balance",
     1e-6,
 )
 def cracking_dam(keyway):

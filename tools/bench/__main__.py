@@ -38,7 +38,8 @@ estimates: the share of the estimates of errors in the time of each deck of inpu
 
 peers: the same dam in Keyway, CalculiX (Debian's calculix-ccx) and OpenSees (pip's openseespy, in
 a Python named by --opensees-python): weight, a linear history, a history with two joints. Time,
-memory and displacements side by side, as in docs/performance.md. The first of --sizes is used.
+memory and displacements side by side, as in docs/studies/other_programs.md. The first of --sizes
+is used.
 
 ranks: a linear dam on 1, 2 and 4 processes with both solvers, beside the program with two threads;
 --petsc-program is the program of the preset petsc (docs/large_models.md).
