@@ -9,6 +9,7 @@ module cli
   use keyword_help, only: describe_keyword, list_keywords
   use message_help, only: explain_message, message_lines
   use nearest_words, only: nearest_choice
+  use option_table, only: find_option, needs_value, option, option_words, options_of_umat, usage
   use parse_text, only: parse_integer, upper_case
   use petsc_equations, only: has_petsc
   use process_limits, only: print_text
@@ -44,44 +45,7 @@ module cli
     logical :: is_empty = .false. !< no argument at all
   end type command_line
 
-  character(*), parameter :: options = '-o | -j | -q | --check | --keywords | --fields | '// &
-                             '--explain | --version | --help | -h | --continue | --umat | '// &
-                             '--umat-flags | --umat-library | --umat-threadsafe | '// &
-                             '--umat-check | --material | --save-joint-problems | '// &
-                             '--solver | --c3d8=full | --c3d8=bbar | --small-strain'
-
 contains
-
-  !> How the program is called.
-  pure function usage() result(text)
-    character(:), allocatable :: text !< lines with new_line between them
-    text = 'usage: keyway [options] job.inp'//nl// &
-           '  -o DIR             folder of the results (default: .)'//nl// &
-           '  -j N               threads'//nl// &
-           '  --continue         go on from the last checkpoint of this job in DIR'//nl// &
-           '  --check            read and verify only, print a summary of the model'//nl// &
-           '  --material         run the tests of materials (*MATERIAL TEST), no analysis'//nl// &
-           '  --umat FILE ..     the user''s own materials: UMAT as Fortran source or '// &
-           'shared library'//nl// &
-           '  --umat-flags TEXT  compiler flags for these sources'//nl// &
-           '  --umat-library LIB keep the library; without a deck only build it'//nl// &
-           '  --umat-threadsafe  several threads may call the UMAT at once'//nl// &
-           '  --umat-check       compare DDSDDE of the UMAT with differences of STRESS'//nl// &
-           '  --save-joint-problems N  save increments with more than N iterations on '// &
-           'joints, one HDF5 file each'//nl// &
-           '  --solver NAME      of several processes: AUTO, DIRECT, BLR or ITERATIVE'//nl// &
-           '  --c3d8=full|bbar   meaning of C3D8: 2 x 2 x 2 points (CalculiX) or B-bar '// &
-           '(Abaqus)'//nl// &
-           '  --small-strain     analyse steps with NLGEOM=YES with small strains'//nl// &
-           '  --keywords [NAME]  the reference of all keywords, or of one'//nl// &
-           '  --fields [NAME]    the fields of results: components, place, unit, meaning'//nl// &
-           '  --explain [NAME]   the kinds of messages, or what one means and what to do'//nl// &
-           '  -q                 print errors only'//nl// &
-           '  --version          compiler, flags, libraries'//nl// &
-           '  --help             this page'//nl// &
-           'exit code: 0 finished, 1 the analysis stopped, 2 bad deck or usage, '// &
-           '3 the system failed'
-  end function usage
 
   !> Reads the arguments of the program.
   subroutine parse_command_line(given, error)
@@ -121,35 +85,46 @@ contains
     integer, intent(inout) :: i
     type(command_line), intent(inout) :: given
     type(error_type), allocatable, intent(out) :: error
+    type(option) :: found
     character(:), allocatable :: word
+    logical :: is_known
     word = argument(i)
     i = i + 1
-    select case (word)
-    case ('-o', '-j', '--umat', '--umat-flags', '--umat-library', '--save-joint-problems', &
-          '--solver')
+    call find_option(word, found, is_known)
+    if (.not. is_known) then
+      call read_deck_name(word, given, error)
+    else if (needs_value(found)) then
       call read_value(word, i, given, error)
+    else
+      call read_option(found, word, i, given)
+    end if
+  end subroutine read_argument
+
+  !> Reads an option that has no value, has it in the same word, or may have a name behind it.
+  subroutine read_option(found, word, i, given)
+    type(option), intent(in) :: found
+    character(*), intent(in) :: word !< that the user gave
+    integer, intent(inout) :: i !< argument behind the option; steps over a name
+    type(command_line), intent(inout) :: given
+    select case (found%name)
     case ('--check')
       given%is_check = .true.
     case ('--material')
       given%is_material = .true.
       given%reading%is_for_tests = .true.
-    case ('--c3d8=full', '--c3d8=bbar')
-      given%reading%c3d8 = upper_case(word(8:))
+    case ('--c3d8=')
+      given%reading%c3d8 = upper_case(word(len_trim(found%name) + 1:))
     case ('--small-strain')
       given%reading%takes_small_strain = .true.
     case ('-q')
       given%is_quiet = .true.
     case ('--version')
       given%wants_version = .true.
-    case ('--help', '-h')
+    case ('--help')
       given%wants_help = .true.
     case ('--keywords')
       given%wants_keywords = .true.
-      do while (i <= command_argument_count()) ! a name may be several words
-        if (index(argument(i), '-') == 1) exit
-        given%keyword = trim(given%keyword//' '//argument(i))
-        i = i + 1
-      end do
+      call read_keyword_name(i, given%keyword)
     case ('--fields')
       given%wants_fields = .true.
       call read_name(i, given%field)
@@ -164,9 +139,20 @@ contains
       given%is_continued = .true.
       given%umat%is_continued = .true.
     case default
-      call read_deck_name(word, given, error)
+      error stop 'an option of the table is not read'
     end select
-  end subroutine read_argument
+  end subroutine read_option
+
+  !> The name of a keyword, which may be several words, up to the next option; steps over it.
+  subroutine read_keyword_name(i, name)
+    integer, intent(inout) :: i
+    character(:), allocatable, intent(inout) :: name
+    do while (i <= command_argument_count())
+      if (index(argument(i), '-') == 1) return
+      name = trim(name//' '//argument(i))
+      i = i + 1
+    end do
+  end subroutine read_keyword_name
 
   !> A name that may follow an option; steps over it.
   subroutine read_name(i, name)
@@ -204,7 +190,7 @@ contains
     case ('--umat')
       call read_umat_files(i, given)
     case default
-      error stop 'an option with a value is not read'
+      error stop 'an option of the table is not read'
     end select
     i = i + 1
   end subroutine read_value
@@ -218,8 +204,7 @@ contains
       if (len(umat%flags) + len(umat%target) == 0 .and. .not. umat%is_threadsafe .and. &
           .not. umat%checks_tangent) return
     end associate
-    call raise(error, 'keyway: --umat-flags, --umat-library, --umat-threadsafe and '// &
-               '--umat-check go with --umat'//nl//usage(), deck_is_wrong)
+    call raise(error, 'keyway: '//options_of_umat()//' go with --umat'//nl//usage(), deck_is_wrong)
   end subroutine check_umat_options
 
   !> The argument after --umat, and the following ones that end like code; `i` is the last of them.
@@ -246,6 +231,7 @@ contains
                              'F08', 'FPP', 'O', 'A', 'SO'])
   end function is_code
 
+  !> Reads the value of -j.
   subroutine read_threads(word, given, error)
     character(*), intent(in) :: word
     type(command_line), intent(inout) :: given
@@ -294,13 +280,14 @@ contains
                'iterations of an increment that is not saved, 0 or more', deck_is_wrong)
   end subroutine read_iterations
 
+  !> Reads a word that is no option: the path of the deck.
   subroutine read_deck_name(word, given, error)
     character(*), intent(in) :: word
     type(command_line), intent(inout) :: given
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: nearest
     if (index(word, '-') == 1) then
-      nearest = nearest_choice(word, options)
+      nearest = nearest_choice(word, option_words())
       if (len(nearest) > 0) nearest = "; did you mean '"//nearest//"'?"
       call raise(error, "keyway: unknown option '"//word//"'"//nearest//nl//usage(), deck_is_wrong)
     else if (len(given%deck) > 0) then
@@ -346,6 +333,7 @@ contains
     end if
   end subroutine print_answer
 
+  !> Prints the reference of a keyword, or the list of all.
   subroutine print_keywords(name, error)
     character(*), intent(in) :: name !< '' for all
     type(error_type), allocatable, intent(out) :: error
@@ -362,6 +350,7 @@ contains
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_keywords
 
+  !> Prints the page of a field of results, or the list of all.
   subroutine print_fields(name, error)
     character(*), intent(in) :: name !< '' for all
     type(error_type), allocatable, intent(out) :: error
@@ -376,6 +365,7 @@ contains
     if (.not. is_known) call raise(error, 'keyway: '//text, deck_is_wrong)
   end subroutine print_fields
 
+  !> Prints the page of a kind of messages, or the list of all.
   subroutine print_explanation(name, error)
     character(*), intent(in) :: name !< '' for all
     type(error_type), allocatable, intent(out) :: error

@@ -8,7 +8,7 @@ module divided_run
   use file_system, only: base_name
   use increment_listener, only: listener
   use initial_state, only: start_analysis
-  use omp_lib, only: omp_get_num_procs, omp_set_num_threads
+  use omp_lib, only: omp_get_num_procs
   use problem_definition, only: problem
   use rank_balance, only: balance_of_ranks, gather_balance
   use ranks, only: is_first_rank, number_of_first_rank, num_ranks, num_ranks_here, share_error

@@ -1,7 +1,6 @@
 !> Runs and writes the tests of materials. A test that stops does not stop the others.
 module run_material
   use cli, only: command_line
-  use diagnostics, only: diagnostic_list
   use errors, only: error_type, keep_first, raise, system_failed
   use file_system, only: base_name, make_folder, safe_name
   use kinds, only: rk

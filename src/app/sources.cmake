@@ -10,6 +10,7 @@ set(sources
   main.f90
   model_summary.f90
   motion_peaks.f90
+  option_table.f90
   run_analysis.f90
   run_material.f90
   shared_costs.f90

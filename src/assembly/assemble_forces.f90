@@ -3,7 +3,7 @@ module assemble_forces
   use kinds, only: rk
   use guest_type, only: guest
   use problem_definition, only: problem
-  use node_dofs, only: num_directions, zero_vectors
+  use node_dofs, only: zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
   use global_vectors, only: multiply

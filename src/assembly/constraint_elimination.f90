@@ -1,6 +1,5 @@
 !> Dependent dofs of a step: joints and ties in the numbering.
 module constraint_elimination
-  use kinds, only: rk
   use errors, only: error_type
   use dam_mesh, only: fe_mesh, node_tie, are_there
   use guest_list, only: ties_of

@@ -3,7 +3,7 @@ module deck_lexer
   use card_lines, only: file_name, line_origin
   use deck_card, only: card, card_parameter
   use deck_source, only: names_abaqus, read_source, source_line, source_text, spot_in_source
-  use deck_words, only: is_blank, next_word, split_parameter, strip_quotes
+  use deck_words, only: next_word, split_parameter, strip_quotes
   use diagnostics, only: diagnostic_list, severity_error
   use keyword_spec, only: find_spec, keyword
   use parse_text, only: single_blanks, upper_case

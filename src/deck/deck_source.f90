@@ -8,7 +8,7 @@ module deck_source
   use write_text, only: as_text
   implicit none
   private
-  public :: source_text, source_file, source_line, read_source, spot_in_source
+  public :: source_text, source_line, read_source, spot_in_source
   public :: names_abaqus
 
   character, parameter :: line_feed = achar(10), return = achar(13)

@@ -123,7 +123,7 @@ contains
       text = axis_name(i)
       if (unit(i) < 0.0_rk) text = '-'//text
     else
-      text = place_text(unit, 1.0e-3_rk)
+      text = place_text(unit, negligible)
     end if
   end function direction_text
 

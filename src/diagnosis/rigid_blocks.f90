@@ -16,6 +16,7 @@ module rigid_blocks
   public :: block_set, find_blocks, find_tied_parts, join_blocks, jump_rows, add_supports, add_tie
   public :: add_square
 
+  !> Blocks, parts or bodies of a model.
   type :: block_set
     integer :: num_blocks = 0
     integer, allocatable :: block_of(:) !< (nodes) 0: a node without an element
@@ -34,7 +35,7 @@ contains
     type(row_table) :: bonds
     integer :: i
     allocate (parent(model%mesh%num_nodes), source=0)
-    call unite_elements(model, .false., parent)
+    call unite_elements(model, with_joints=.false., parent=parent)
     do i = 1, size(model%guests)
       call model%guests(i)%item%add_bonds(bonds)
     end do
@@ -53,7 +54,7 @@ contains
     type(row_table) :: bonds
     integer :: i, used
     allocate (parent(model%mesh%num_nodes), source=0)
-    call unite_elements(model, .true., parent)
+    call unite_elements(model, with_joints=.true., parent=parent)
     do i = 1, size(model%joints)
       call model%joints(i)%add_bonds(bonds)
     end do

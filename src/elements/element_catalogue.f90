@@ -62,9 +62,11 @@ contains
       allocate (bbar_hexahedron :: element)
     case ('C3D8I')
       allocate (incompatible_hexahedron :: element)
+      element%has_small_jumps = .true. ! the modes follow bending
     case ('C3D8R')
       allocate (reduced_hexahedron :: element)
       element%num_points = 1
+      element%has_small_jumps = .true. ! one point shows no bending
     case default
       return
     end select

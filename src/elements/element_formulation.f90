@@ -16,6 +16,9 @@ module element_formulation
     !> The strain is the symmetric gradient at each of the 2 x 2 x 2 points, and there is no
     !> hourglass control: hex8_slopes has faster ways to strains and stiffness
     logical :: has_plain_strain = .false.
+    !> The stresses of neighbours hardly differ at their corners, whatever the error: jumps of
+    !> stresses do not measure it
+    logical :: has_small_jumps = .false.
   contains
     procedure(strain_operator), deferred :: strain_operator
     procedure :: find_strains => apply_operator

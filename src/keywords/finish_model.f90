@@ -22,6 +22,7 @@ module finish_model
 
 contains
 
+  !> Completes the draft after its last card: what depends on several cards.
   subroutine complete_model(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults

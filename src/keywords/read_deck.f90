@@ -109,17 +109,22 @@ contains
     call warn_of_histories(model, faults)
     call warn_of_idle_steps(model, faults)
     call warn_of_repeats(model, faults)
-    if (allocated(model%problem%stages%is_absent)) then
-      call list_inelastic_blocks(model%problem%mesh, model%problem%materials, &
-                                 model%problem%inelastic, &
-                                 classes_of(model%problem%stages%is_absent))
-    else
-      call list_inelastic_blocks(model%problem%mesh, model%problem%materials, &
-                                 model%problem%inelastic)
-    end if
+    call list_inelastic(model%problem)
     call warn_of_missing_fields(model, faults)
   end subroutine complete_and_verify
 
+  !> Lists the blocks of inelastic solids; elements that come and go together share blocks.
+  subroutine list_inelastic(model)
+    type(problem), intent(inout) :: model
+    if (allocated(model%stages%is_absent)) then
+      call list_inelastic_blocks(model%mesh, model%materials, model%inelastic, &
+                                 classes_of(model%stages%is_absent))
+    else
+      call list_inelastic_blocks(model%mesh, model%materials, model%inelastic)
+    end if
+  end subroutine list_inelastic
+
+  !> Opens the draft of a problem with empty lists.
   subroutine open_draft(path, model)
     character(*), intent(in) :: path
     type(draft), intent(inout) :: model

@@ -17,13 +17,21 @@ module verify_ties
   private
   public :: verify_tied_parts
 
-  !> Bodies of parts that ties hold to each other by hinges alone, or not at all; more are not
-  !> checked: the modes of 100 bodies take 0.3 s, and the cost grows with the cube.
+  !> Most bodies that are checked: the modes of 100 take 0.3 s, and the cost grows with the cube.
   integer, parameter :: most_bodies = 100
   !> Of the largest, in squares. A chain of 100 bodies has 1e-10, round-off 1e-15.
   real(rk), parameter :: least_resistance = 1.0e-12_rk
   !> A smaller share of a part in the free motions, squared, is round-off.
   real(rk), parameter :: no_share = 1.0e-6_rk
+
+  !> Parts of the model, and bodies of parts that ties and equations hold to each other in all
+  !> directions.
+  type :: tied_bodies
+    type(block_set) :: parts, bodies
+    integer, allocatable :: body_of(:) !< (parts)
+    logical, allocatable :: is_unsure(:) !< (parts) nodes without elements may hold them
+    real(rk), allocatable :: resistance(:, :) !< (6*bodies, 6*bodies) of ties and equations
+  end type tied_bodies
 
 contains
 
@@ -32,33 +40,82 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(node_tie), allocatable :: ties(:)
-    type(block_set) :: parts, bodies
-    type(part_resistance), allocatable :: list(:)
+    type(tied_bodies) :: tied
     type(error_type), allocatable :: error
-    real(rk), allocatable :: by_ties(:, :), matrix(:, :), checked(:, :)
-    real(rk), allocatable :: resistance(:), motions(:, :)
-    integer, allocatable :: node(:), direction(:), body_of(:)
-    integer :: i, num_free
+    integer :: first
+    first = findloc(model%problem%steps%procedure%has_inertia, .false., 1)
+    if (first == 0) return
     call ties_of(model%problem%guests, ties)
     if (size(ties) == 0) return
-    call find_tied_parts(model%problem, parts)
-    if (parts%num_blocks < 2) return
-    if (.not. all(have_elements(parts, ties))) return ! nodes without elements may pass on motions
-    call list_resistance(parts, model%problem%mesh%x, ties, list, error)
+    call find_tied_parts(model%problem, tied%parts)
+    if (tied%parts%num_blocks < 2) return
+    call unite_parts(model, ties, tied, error)
     if (allocated(error)) return
-    call unite_held(list, parts%num_blocks, body_of, error)
+    if (tied%bodies%num_blocks > most_bodies) then
+      call model%cards(model%procedure_card(first))%warn( &
+        faults, 'the model has '//as_text(tied%bodies%num_blocks)//' parts that ties and '// &
+        'equations do not make one body: whether one of them is free to move is not checked, '// &
+        'which takes at most '//as_text(most_bodies)//' parts')
+      return
+    end if
+    call verify_steps(model, tied, faults)
+  end subroutine verify_tied_parts
+
+  !> Unites the parts that ties hold in all directions, and finds what ties resist of the motions of
+  !> the bodies.
+  subroutine unite_parts(model, ties, tied, error)
+    type(draft), intent(in) :: model
+    type(node_tie), intent(in) :: ties(:)
+    type(tied_bodies), intent(inout) :: tied !< with its parts
+    type(error_type), allocatable, intent(out) :: error
+    type(part_resistance), allocatable :: list(:)
+    integer :: n
+    call find_unsure(tied%parts, ties, tied%is_unsure)
+    call list_resistance(tied%parts, model%problem%mesh%x, ties, list, error)
     if (allocated(error)) return
-    call join_blocks(model%problem%mesh, parts, body_of, bodies)
-    if (bodies%num_blocks > most_bodies) return
-    allocate (by_ties(6*bodies%num_blocks, 6*bodies%num_blocks), source=0.0_rk)
-    call add_resistance(bodies, body_of, list, by_ties)
-    checked = 0.0_rk*by_ties
+    call unite_held(list, tied%parts%num_blocks, tied%body_of, error)
+    if (allocated(error)) return
+    call join_blocks(model%problem%mesh, tied%parts, tied%body_of, tied%bodies)
+    if (tied%bodies%num_blocks > most_bodies) return
+    n = 6*tied%bodies%num_blocks
+    allocate (tied%resistance(n, n), source=0.0_rk)
+    call add_resistance(tied%bodies, tied%body_of, list, tied%resistance)
+  end subroutine unite_parts
+
+  !> Parts in rows with a node without elements: such a node may hold them, or pass on motions.
+  subroutine find_unsure(parts, ties, is_unsure)
+    type(block_set), intent(in) :: parts
+    type(node_tie), intent(in) :: ties(:)
+    logical, allocatable, intent(out) :: is_unsure(:) !< (parts)
+    integer, allocatable :: touched(:)
+    integer :: t, i
+    allocate (is_unsure(parts%num_blocks), source=.false.)
+    do t = 1, size(ties)
+      associate (tie => ties(t))
+        do i = 1, size(tie%node)
+          touched = parts%block_of([tie%node(i), tie%item(tie%first(i):tie%first(i + 1) - 1)])
+          if (any(touched == 0)) is_unsure(pack(touched, touched > 0)) = .true.
+        end do
+      end associate
+    end do
+  end subroutine find_unsure
+
+  !> Reports the first step without inertia in which a body is free.
+  subroutine verify_steps(model, tied, faults)
+    type(draft), intent(in) :: model
+    type(tied_bodies), intent(in) :: tied
+    type(diagnostic_list), intent(inout) :: faults
+    type(error_type), allocatable :: error
+    real(rk), allocatable :: matrix(:, :), checked(:, :), resistance(:), motions(:, :)
+    integer, allocatable :: node(:), direction(:)
+    integer :: i, num_free
+    checked = 0.0_rk*tied%resistance
     do i = 1, size(model%problem%steps)
       if (model%problem%steps(i)%procedure%has_inertia) cycle
-      matrix = by_ties
+      matrix = tied%resistance
       call supports_of_step(model%problem, model%problem%steps(i), node, direction)
-      call add_supports(bodies, model%problem%mesh%x, node, direction, matrix)
-      call hold_absent(model, i, parts, body_of, matrix)
+      call add_supports(tied%bodies, model%problem%mesh%x, node, direction, matrix)
+      call hold_bodies(tied, tied%is_unsure .or. are_absent(model, i, tied%parts), matrix)
       call scale_parts(matrix)
       if (all(abs(matrix - checked) <= 0.0_rk)) cycle
       checked = matrix
@@ -66,44 +123,43 @@ contains
       if (allocated(error)) return
       num_free = count(resistance <= least_resistance*maxval(resistance))
       if (num_free == 0) cycle
-      call fault_part(model, i, bodies, motions(:, :num_free), faults)
+      call fault_part(model, i, tied%bodies, motions(:, :num_free), faults)
       return
     end do
-  end subroutine verify_tied_parts
+  end subroutine verify_steps
 
-  !> Whether all nodes of a tie belong to elements.
-  elemental logical function have_elements(parts, tie)
-    type(block_set), intent(in) :: parts
-    type(node_tie), intent(in) :: tie
-    have_elements = all(parts%block_of(tie%node) > 0) &
-                    .and. all(parts%block_of(tie%item(:tie%first(size(tie%node) + 1) - 1)) > 0)
-  end function have_elements
-
-  !> Parts that *MODEL CHANGE has taken out in a step do not move, nor do bodies with such parts.
-  subroutine hold_absent(model, number, parts, body_of, matrix)
+  !> Parts that *MODEL CHANGE has taken out in a step.
+  pure function are_absent(model, number, parts) result(is_absent)
     type(draft), intent(in) :: model
     integer, intent(in) :: number !< of the step
     type(block_set), intent(in) :: parts
-    integer, intent(in) :: body_of(:) !< (parts)
-    real(rk), intent(inout) :: matrix(:, :) !< (6*bodies, 6*bodies)
-    logical :: is_there(parts%num_blocks)
-    integer :: b, e, k
+    logical :: is_absent(parts%num_blocks)
+    integer :: b, e
+    is_absent = .false.
     if (.not. allocated(model%problem%stages%is_absent)) return
-    is_there = .false.
+    is_absent = .true.
     associate (mesh => model%problem%mesh)
       do e = 1, mesh%num_elements
         if (model%problem%stages%is_absent(e, number)) cycle
         b = parts%block_of(mesh%nodes(1, e))
-        if (b > 0) is_there(b) = .true.
+        if (b > 0) is_absent(b) = .false.
       end do
     end associate
-    do b = 1, parts%num_blocks
-      if (is_there(b)) cycle
-      do k = 6*body_of(b) - 5, 6*body_of(b)
+  end function are_absent
+
+  !> Holds the bodies of some parts in all directions: they are not reported.
+  subroutine hold_bodies(tied, is_held, matrix)
+    type(tied_bodies), intent(in) :: tied
+    logical, intent(in) :: is_held(:) !< (parts)
+    real(rk), intent(inout) :: matrix(:, :) !< (6*bodies, 6*bodies)
+    integer :: b, k
+    do b = 1, size(is_held)
+      if (.not. is_held(b)) cycle
+      do k = 6*tied%body_of(b) - 5, 6*tied%body_of(b)
         matrix(k, k) = matrix(k, k) + 1.0_rk
       end do
     end do
-  end subroutine hold_absent
+  end subroutine hold_bodies
 
   !> Reports the part with the largest share in the free motions.
   subroutine fault_part(model, number, bodies, motions, faults)

@@ -19,6 +19,7 @@ module applied_load
     procedure :: follow_joint
   end type load
 
+  !> One load of a list.
   type :: load_slot
     class(load), allocatable :: item
   end type load_slot

@@ -17,7 +17,7 @@ program solve_joint_problems
   use joint_operator, only: joint_springs
   use point_groups, only: group_list, single_group
   use joint_forces, only: joint_field, reference_stiffness
-  use joint_iteration, only: smallest_force, start_iteration
+  use joint_iteration, only: joint_increment, smallest_force, start_iteration
   use joint_law, only: joint_state
   use joint_policy, only: run_passes, run_sweeps, share_of
   use joint_problem, only: load_operator, load_problem, saved_operator, saved_problem
@@ -77,64 +77,62 @@ contains
   subroutine solve_one(method, path, number, common, problem, condensed)
     character(*), intent(in) :: method, path
     integer, intent(in) :: number
-    type(saved_operator), intent(in) :: common
-    type(saved_problem), intent(inout) :: problem
-    type(condensed_joints), intent(inout) :: condensed
-    type(joint_state), allocatable :: new(:)
-    type(joint_field) :: field
-    type(balance_outcome) :: outcome
+    type(saved_operator), intent(in), target :: common
+    type(saved_problem), intent(inout), target :: problem
+    type(condensed_joints), intent(inout), target :: condensed
+    type(joint_state), allocatable, target :: new(:)
+    type(joint_increment) :: now
     real(rk) :: started, ended, residual
     character(:), allocatable :: name
     new = problem%old
     call cpu_time(started)
-    call start_iteration(problem%balance, problem%joints, common%operator, condensed%k_ref, &
-                         condensed%scale, problem%old, field, new)
-    field%response = open_response(condensed, common%operator%area, problem%closed_jump, field)
-    call run_method(method, common, problem, condensed, field, new, outcome)
+    call now%view(problem%controls, problem%joints, common%operator, condensed%k_ref, &
+                  problem%old, new)
+    call start_iteration(problem%balance, condensed%scale, now)
+    now%field%response = open_response(condensed, common%operator%area, problem%closed_jump, &
+                                       now%field)
+    call run_method(method, common, problem, condensed, now)
     call cpu_time(ended)
-    residual = measure_laws(common, problem, condensed, field)
+    residual = measure_laws(common, problem, condensed, now%field)
     name = path(index(path, '/', back=.true.) + 1:)
-    write (*, '(a,",",i0,",",i0,2(",",l1),3(",",i0),",",es9.2,",",es9.2)') name, number, &
-      common%operator%num_points, outcome%has_converged, outcome%is_loose, outcome%iterations, &
-      outcome%sweeps, outcome%passes, ended - started, residual
+    associate (outcome => now%outcome)
+      write (*, '(a,",",i0,",",i0,2(",",l1),3(",",i0),",",es9.2,",",es9.2)') name, number, &
+        common%operator%num_points, outcome%has_converged, outcome%is_loose, outcome%iterations, &
+        outcome%sweeps, outcome%passes, ended - started, residual
+    end associate
   end subroutine solve_one
 
   !> The policy of the program, or one of its parts.
-  subroutine run_method(method, common, problem, condensed, field, new, outcome)
+  subroutine run_method(method, common, problem, condensed, now)
     character(*), intent(in) :: method
     type(saved_operator), intent(in) :: common
-    type(saved_problem), intent(inout) :: problem
+    type(saved_problem), intent(inout), target :: problem
     type(condensed_joints), intent(inout) :: condensed
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(out) :: outcome
-    associate (joints => problem%joints, operator => common%operator, old => problem%old, &
-               controls => problem%controls)
-      select case (method)
-      case ('policy')
-        call iterate_on_jumps(condensed, controls, joints, operator, old, field, new, outcome)
-      case ('newton')
-        controls%max_iterations = newton_steps
-        call start_policy(condensed, operator, field)
-        call condensed%run_newton(controls, joints, operator, old, field, new, outcome)
-      case ('passes')
-        call start_policy(condensed, operator, field)
-        call condensed%find_closed(operator)
-        field%scale = condensed%scale
-        call run_passes(condensed, controls, joints, operator, old, field, new, outcome)
-      case ('sweeps')
-        call start_policy(condensed, operator, field)
-        call condensed%find_closed(operator)
-        field%scale = condensed%scale
-        do while (outcome%sweeps < all_sweeps .and. .not. outcome%has_converged)
-          call run_sweeps(condensed, joints, operator, old, sweeps_at_once, field, new, outcome)
-          outcome%has_converged = measure_laws(common, problem, condensed, field) &
-                                  < controls%residual_tolerance
-        end do
-      case default
-        error stop 'unknown method'
-      end select
-    end associate
+    type(joint_increment), intent(inout) :: now
+    select case (method)
+    case ('policy')
+      call iterate_on_jumps(condensed, now)
+    case ('newton')
+      problem%controls%max_iterations = newton_steps
+      call start_policy(condensed, now%operator, now%field)
+      call condensed%run_newton(now)
+    case ('passes')
+      call start_policy(condensed, now%operator, now%field)
+      call condensed%find_closed(now%operator)
+      now%field%scale = condensed%scale
+      call run_passes(condensed, now)
+    case ('sweeps')
+      call start_policy(condensed, now%operator, now%field)
+      call condensed%find_closed(now%operator)
+      now%field%scale = condensed%scale
+      do while (now%outcome%sweeps < all_sweeps .and. .not. now%outcome%has_converged)
+        call run_sweeps(condensed, sweeps_at_once, now)
+        now%outcome%has_converged = measure_laws(common, problem, condensed, now%field) &
+                                    < problem%controls%residual_tolerance
+      end do
+    case default
+      error stop 'unknown method'
+    end select
   end subroutine run_method
 
   !> The residual of the laws at the jumps of a field.

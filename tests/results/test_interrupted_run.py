@@ -15,6 +15,7 @@ from restart_case import differences, kill_at, rows_of, start
 from test_stopped_run import DECK
 
 LONG = {"increments": 100_000, "duration": 1000, "frequency": 50}
+SHORT = DECK.format(increments=100, duration=0.1, frequency=5)
 
 
 @pytest.fixture
@@ -62,6 +63,7 @@ def test_a_second_signal_ends_the_program_at_once(program_path, tmp_path):
     process.send_signal(signal.SIGINT)
     assert process.wait(5) == -signal.SIGINT
     assert status_of(out)[0] == "stopped"
+    assert not (out / "job.lock").exists()
 
 
 def block_deck(n: int) -> str:
@@ -158,7 +160,7 @@ def test_a_killed_run_is_recognised(program_path, long_deck, tmp_path, capsys):
     assert why_incomplete(out, "job") == "the run was killed"
     plot.main([str(out), "-o", str(tmp_path / "pictures")])
     assert "plot: job is incomplete: the run was killed" in capsys.readouterr().err
-    long_deck.write_text(DECK.format(increments=100, duration=0.1, frequency=5))
+    long_deck.write_text(SHORT)
     done = subprocess.run(
         [program_path, "-o", out, long_deck], stderr=subprocess.PIPE, text=True, check=True
     )
@@ -180,7 +182,7 @@ def test_a_second_run_in_the_folder_is_refused(program_path, long_deck, tmp_path
     subprocess.run([program_path, "-q", "-o", out, bad / "job.inp"], stderr=subprocess.DEVNULL)
     assert status_of(out)[0] == "running"  # the bad deck has not touched it
     other = tmp_path / "other.inp"
-    other.write_text(DECK.format(increments=100, duration=0.1, frequency=5))
+    other.write_text(SHORT)
     subprocess.run([program_path, "-q", "-o", out, other], check=True)  # another job
     first.send_signal(signal.SIGTERM)
     first.communicate()
@@ -199,7 +201,6 @@ def test_a_lock_of_another_host_stays(program_path, long_deck, tmp_path):
     assert [p.name for p in out.iterdir()] == ["job.lock"]
 
 
-SHORT = DECK.format(increments=100, duration=0.1, frequency=5)
 PULSE = "*AMPLITUDE, NAME=PULSE\n0, 0, 0.1, 1, 0.2, 0\n"
 
 

@@ -11,11 +11,10 @@ from pathlib import Path
 
 import pytest
 from restart_case import rows_of, start
-from test_interrupted_run import block_deck
+from test_interrupted_run import SHORT, block_deck
 from test_stopped_run import DECK
 
 UMAT = Path(__file__).resolve().parents[2] / "input" / "umat" / "plastic_j2.f90"
-SHORT = DECK.format(increments=100, duration=0.1, frequency=5)
 
 
 @pytest.fixture(scope="module")
@@ -57,20 +56,6 @@ def test_missing_memory(program_path, umat, tmp_path, has_umat):
     assert process.returncode == 3, text
     assert "not enough memory in part '" in text or "no memory for " in text
     assert json.loads((out / "job.json").read_text())["status"] == "stopped"
-    check_next_run(program_path, out, path)
-
-
-def test_a_second_signal(program_path, tmp_path):
-    path, out = tmp_path / "job.inp", tmp_path / "out"
-    path.write_text(block_deck(26))
-    process = start(program_path, "-q", "-o", out, path)
-    while not (out / "job.json").exists():
-        assert process.poll() is None
-    process.send_signal(signal.SIGINT)
-    with pytest.raises(subprocess.TimeoutExpired):
-        process.wait(0.05)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(5) == -signal.SIGINT
     check_next_run(program_path, out, path)
 
 

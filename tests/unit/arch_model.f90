@@ -2,7 +2,6 @@
 module arch_model
   use kinds, only: rk
   use problem_definition, only: problem
-  use material_law, only: material
   use material_elastic, only: elastic_law
   use joint_points, only: dam_joint, list_faces
   use step_plan, only: step_fixity

@@ -96,3 +96,22 @@ def test_parts_that_are_not_there_need_no_support(keyway):
     run = keyway(deck)
     assert run.json["status"] == "finished"
     assert np.isfinite(run.json["steps"][0]["energy"]["strain"])
+
+
+@pytest.mark.parametrize("chained", ["FOOT", "TOP"])
+def test_a_node_without_elements_excuses_only_its_own_parts(keyway, chained):
+    """A lift on an edge is free, whatever node without elements an equation adds elsewhere; beside
+    the lift itself that node may hold it."""
+    deck = tower(2, 1)
+    node = {"FOOT": 1, "TOP": 16}[chained]  # the first node of L0, the last of L1
+    deck = deck.replace("NSET=ALL\n", "NSET=ALL\n9999, 50., 0., 0.\n", 1)
+    deck = deck.replace("*STEP", f"*EQUATION\n2\n9999, 1, 1., {node}, 1, -1.\n*STEP", 1)
+    run = keyway(deck, "--check", code=2 if chained == "FOOT" else 0)
+    assert ("is free to move" in run.stderr) == (chained == "FOOT")
+
+
+def test_too_many_hinges_are_reported(keyway):
+    """Beyond 100 parts on hinges the check is left out, and the log says so."""
+    run = keyway(tower(102, 101), "--check")
+    assert "warning: the model has 102 parts that ties and equations do not make one" in run.stderr
+    assert "is not checked, which takes at most 100 parts" in run.stderr

@@ -165,7 +165,7 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     logical :: is_kept
-    if (abs(dt - self%scheme%dt) <= 1.0e-12_rk*dt) return
+    if (self%scheme%is_for(dt)) return
     is_kept = .false.
     if (plan%follows_accuracy()) then
       call change_solver(self, model, plan, dt, results, is_kept, error)

@@ -312,7 +312,7 @@ contains
     real(rk), intent(in) :: dt
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    if (abs(dt - self%matrices%scheme%dt) <= 1.0e-12_rk*dt) return
+    if (self%matrices%scheme%is_for(dt)) return
     call self%solids%matrix%start_elastic(dt)
     call results%costs%start('reduce', 'structure', 'solver')
     call self%matrices%prepare(self%basis, &

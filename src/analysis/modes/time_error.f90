@@ -26,6 +26,8 @@ module time_error
 
   !> Of a squared frequency: a mesh so coarse has no estimate that holds.
   real(rk), parameter :: most_softening = 0.5_rk
+  !> Least root of an overdamped mode, over its damping: cosh and sinh/root do not change below.
+  real(rk), parameter :: least_root = 1.0e-6_rk
 
   !> Modes with unit modal mass; none where there is no estimate.
   type :: error_modes
@@ -197,7 +199,7 @@ contains
       cosine = cos(root*dt)
       sine = sin(root*dt)/root
     else
-      root = max(root, 1.0e-6_rk*c)
+      root = max(root, least_root*c) ! sinh(0)/0 at critical damping
       cosine = cosh(root*dt)
       sine = sinh(root*dt)/root
     end if

@@ -22,6 +22,8 @@ module reduced_estimate
 
   !> Error of a model over its difference from the model with half of the modes.
   real(rk), parameter :: share_of_difference = 0.5_rk
+  !> A step of so little more than whole increments has those alone.
+  real(rk), parameter :: round_off = 1.0e-9_rk
   !> Openings below this share of the displacements count as closed joints.
   real(rk), parameter :: smallest_share = 1.0e-4_rk
   !> A difference of displacements, over the largest, that counts where joints stay closed: the
@@ -66,14 +68,14 @@ contains
     difference = share_of_difference*difference
     estimate = 1.0_rk
     if (difference < largest) estimate = difference/largest
-    ! A run without equilibrium tells nothing good of the model.
+    ! A run without equilibrium does not count for the model.
     if (n < num_increments_of(plan)) estimate = 1.0_rk
   end subroutine estimate_error
 
   !> The increments of a step.
   pure integer function num_increments_of(plan)
     type(step), intent(in) :: plan
-    num_increments_of = ceiling(plan%duration/plan%first_increment - 1.0e-9_rk)
+    num_increments_of = ceiling(plan%duration/plan%first_increment - round_off)
   end function num_increments_of
 
   !> The histories of a run with the lowest modes: openings, then displacements of some nodes. Ends

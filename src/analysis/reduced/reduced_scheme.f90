@@ -12,8 +12,8 @@ module reduced_scheme
   use dense_products, only: times, times_vector
   use equilibrium, only: balance_outcome, force_balance
   use hht_scheme, only: hht
-  use joint_forces, only: joint_field, reference_stiffness
-  use joint_iteration, only: start_iteration
+  use joint_forces, only: reference_stiffness
+  use joint_iteration, only: joint_increment, start_iteration
   use joint_law, only: joint_state
   use joint_operator, only: joint_springs, jump_operator
   use joint_points, only: dam_joint
@@ -132,22 +132,23 @@ contains
 
   !> Joint states at the end of an increment, and the tractions of the equilibrium there.
   subroutine solve_joints(self, controls, balance, joints, old, new, traction, outcome)
-    class(reduced_matrices), intent(inout) :: self
-    type(step_controls), intent(in) :: controls
+    class(reduced_matrices), intent(inout), target :: self
+    type(step_controls), intent(in), target :: controls
     type(force_balance), intent(in) :: balance !< its offset: jumps without joint forces
-    type(dam_joint), intent(in) :: joints(:)
-    type(joint_state), intent(in) :: old(:)
-    type(joint_state), intent(inout) :: new(:)
+    type(dam_joint), intent(in), target :: joints(:)
+    type(joint_state), intent(in), target :: old(:)
+    type(joint_state), intent(inout), target :: new(:)
     real(rk), intent(out) :: traction(:, :) !< (3, points) [Pa]
     type(balance_outcome), intent(out) :: outcome
-    type(joint_field) :: field
-    associate (k_ref => self%joints%k_ref, operator => self%operator)
-      call start_iteration(balance, joints, operator, k_ref, self%joints%scale, old, field, new)
-      field%response = balance%offset &
-                       - jumps_of(self%joints, operator%area, &
-                                  k_ref*(balance%offset - field%jump) + field%iterate)
-      call iterate_on_jumps(self%joints, controls, joints, operator, old, field, new, outcome)
-    end associate
-    traction = field%iterate
+    type(joint_increment) :: now
+    call now%view(controls, joints, self%operator, self%joints%k_ref, old, new)
+    call start_iteration(balance, self%joints%scale, now)
+    now%field%response = balance%offset &
+                         - jumps_of(self%joints, self%operator%area, &
+                                    self%joints%k_ref*(balance%offset - now%field%jump) &
+                                    + now%field%iterate)
+    call iterate_on_jumps(self%joints, now)
+    traction = now%field%iterate
+    outcome = now%outcome
   end subroutine solve_joints
 end module reduced_scheme

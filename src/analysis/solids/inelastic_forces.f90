@@ -15,7 +15,6 @@ module inelastic_forces
   use inelastic_blocks, only: inelastic_block
   use gauss_rules, only: hex_point
   use shape_hex8, only: derivative_at, gradient_at, hex8_dofs
-  use material_law, only: stress_law
   use material_points, only: point_state, time_increment, no_tangent
   use ranks, only: num_ranks
   implicit none

@@ -139,6 +139,7 @@ module analysis_state
     real(rk), allocatable :: lost(:) !< loss of stiffness [N/m], where it is not elastic
   end type last_matrix
 
+  !> One of the two states of an analysis, converged or trial.
   type, extends(increment_status) :: state
     real(rk), allocatable :: u(:, :) !< (3, nodes) displacement relative to the base [m]
     real(rk), allocatable :: v(:, :), a(:, :) !< (3, nodes) [m/s], [m/s2]; dynamic steps only
@@ -157,6 +158,7 @@ module analysis_state
     type(twin_points), allocatable :: twins(:) !< (materials) where errors of laws are estimated
   end type state
 
+  !> A mode of a frequency step.
   type :: vibration_mode
     real(rk) :: hz = 0.0_rk
     real(rk) :: effective_mass(3) = 0.0_rk !< in x, y, z [kg]

@@ -2,7 +2,6 @@
 !> they differ by from their points shows the error of the law within increments (theory.md, 14.7).
 module path_twins
   use archive_type, only: archive
-  use kinds, only: rk
   use material_points, only: point_state
   use write_text, only: as_text
   implicit none

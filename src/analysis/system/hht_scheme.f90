@@ -8,6 +8,7 @@ module hht_scheme
   private
   public :: hht, make_scheme
 
+  !> What the scheme makes of one increment size.
   type :: hht
     real(rk) :: alpha = 0.0_rk, beta = 0.25_rk, gamma = 0.5_rk
     real(rk) :: dt = 0.0_rk !< [s]
@@ -16,9 +17,22 @@ module hht_scheme
     real(rk) :: joint_weight = 1.0_rk !< of the joint forces at the end of the step
     real(rk) :: old_joint_weight = 0.0_rk !< of the joint forces at the start
     logical :: carries_impulse = .false. !< joint forces by the implicit impulse (7.3)
+  contains
+    procedure :: is_for
   end type hht
 
+  !> Sizes of increments that differ by less, over the size, are the same: differences of times have
+  !> a round-off of 1e-16 of the time.
+  real(rk), parameter :: same_size = 1.0e-12_rk
+
 contains
+
+  !> Whether the scheme is that of an increment size.
+  pure logical function is_for(self, dt)
+    class(hht), intent(in) :: self
+    real(rk), intent(in) :: dt !< [s]
+    is_for = abs(dt - self%dt) <= same_size*dt
+  end function is_for
 
   !> The scheme for one increment size. Joint forces are 'IMPLICIT' (impulse dt times the force at
   !> the end), 'HHT' (weighted as the bulk) or 'END' (force at the end).

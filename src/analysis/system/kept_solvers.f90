@@ -8,6 +8,7 @@ module kept_solvers
   private
   public :: solver_shelf
 
+  !> The solver of one size of increments.
   type :: kept_solver
     real(rk) :: size = 0.0_rk !< of the increment [s]; 0: nothing is kept here
     integer :: last_use = 0
@@ -19,6 +20,7 @@ module kept_solvers
   integer, parameter :: room_share = 3
   real(rk), parameter :: same_size = 1.0e-9_rk !< relative difference of one size
 
+  !> The solvers that are kept.
   type :: solver_shelf
     type(kept_solver), allocatable, private :: items(:)
     integer, private :: num_uses = 0

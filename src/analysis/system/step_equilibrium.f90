@@ -2,7 +2,6 @@
 module step_equilibrium
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
-  use dam_mesh, only: fe_mesh
   use problem_definition, only: problem
   use step_plan, only: step
   use global_vectors, only: multiply

@@ -5,7 +5,7 @@ module step_loads
   use kinds, only: rk
   use amplitudes, only: amplitude, amplitude_at
   use step_control, only: roundoff
-  use step_plan, only: step, step_load, step_fixity
+  use step_plan, only: step, step_load
   use problem_definition, only: problem
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern

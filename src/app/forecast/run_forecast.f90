@@ -56,6 +56,14 @@ module run_forecast
   real(rk), parameter :: output_time = 2.5e-4_rk, file_time = 4.0e-3_rk !< per increment, per MB
   real(rk), parameter :: serial_share = 0.4_rk !< of an increment without laws
 
+  ! Memory [MB].
+  real(rk), parameter :: program_memory = 23.0_rk
+  real(rk), parameter :: static_memory = 2.5e-3_rk, dynamic_memory = 4.0e-3_rk !< per unknown
+  real(rk), parameter :: entry_memory = 1.2e-5_rk !< per entry of the factor
+  real(rk), parameter :: inverse_memory = 0.6e-5_rk !< per entry, of the inverse in its pattern
+  real(rk), parameter :: law_memory = 3.0e-3_rk !< per point
+  real(rk), parameter :: point_memory = 0.08_rk, pair_memory = 2.4e-4_rk !< of joints
+
 contains
 
   !> A section of `keyway --check`; '' where the deck has no steps.
@@ -211,14 +219,14 @@ contains
     type(step), intent(in) :: steps(:)
     type(run_counts), intent(in) :: counts
     real(rk) :: of_unknown
-    of_unknown = 2.5e-3_rk
-    if (any(steps%procedure%has_inertia)) of_unknown = 4.0e-3_rk
-    memory = 23.0_rk + 1.2e-5_rk*counts%entries + of_unknown*counts%unknowns &
-             + 3.0e-3_rk*counts%law_points
+    of_unknown = static_memory
+    if (any(steps%procedure%has_inertia)) of_unknown = dynamic_memory
+    memory = program_memory + entry_memory*counts%entries + of_unknown*counts%unknowns &
+             + law_memory*counts%law_points
     if (counts%points <= most_at_the_end) then
-      memory = memory + 2.4e-4_rk*counts%points**2
+      memory = memory + pair_memory*counts%points**2
     else
-      memory = memory + 0.6e-5_rk*counts%entries + 0.08_rk*counts%points
+      memory = memory + inverse_memory*counts%entries + point_memory*counts%points
     end if
   end function memory_of
 

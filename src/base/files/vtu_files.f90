@@ -19,6 +19,7 @@ module vtu_files
   integer, parameter :: in_points = 1, in_cells = 2, on_points = 3, on_cells = 4
   character(9), parameter :: section_names(4) = ['Points   ', 'Cells    ', 'PointData', 'CellData ']
 
+  !> One array of the file.
   type :: data_array
     integer :: section = 0
     character(:), allocatable :: attributes !< XML, without the offset

@@ -28,7 +28,6 @@ module logging
     procedure :: say
     procedure :: note
     procedure :: progress
-    procedure :: complain
     procedure :: close => close_log
   end type run_log
 
@@ -124,14 +123,6 @@ contains
     end do
     if (length < 1) length = min(len(line), width)
   end function fitting_length
-
-  !> Writes an error to the file and to stderr, quiet or not.
-  subroutine complain(self, line)
-    class(run_log), intent(inout) :: self
-    character(*), intent(in) :: line !< may hold several lines
-    call self%note(line)
-    call show(self, line)
-  end subroutine complain
 
   !> Ends the progress line and closes the file.
   subroutine close_log(self)

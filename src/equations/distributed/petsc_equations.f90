@@ -1,7 +1,7 @@
 !> Distributed equations of PETSc behind plain arguments: petsc_bridge.c, or without_petsc.c in the
 !> plain program. All ranks call every procedure.
 module petsc_equations
-  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_double, c_int, c_ptr, c_size_t
   implicit none
   private
   public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc

@@ -14,6 +14,7 @@ module coupling_equation
 
 contains
 
+  !> The equations in the summary of the model.
   function describe(self) result(text)
     class(equation_set), intent(in) :: self
     character(:), allocatable :: text

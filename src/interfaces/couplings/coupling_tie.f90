@@ -28,6 +28,7 @@ module coupling_tie
 
 contains
 
+  !> The tie in the summary of the model.
   function describe(self) result(text)
     class(exact_tie), intent(in) :: self
     character(:), allocatable :: text

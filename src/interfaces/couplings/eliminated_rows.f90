@@ -29,6 +29,7 @@ contains
     end associate
   end subroutine add_bonds
 
+  !> Adds the rows to the ties of the model.
   subroutine add_ties(self, ties, used)
     class(row_guest), intent(in) :: self
     type(node_tie), intent(inout) :: ties(:)

@@ -100,6 +100,7 @@ contains
     end do
   end subroutine add_matrix
 
+  !> The springs in the summary of the model.
   function describe(self) result(text)
     class(coupling), intent(in) :: self
     character(:), allocatable :: text

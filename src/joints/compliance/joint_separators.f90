@@ -4,7 +4,6 @@
 module joint_separators
   use dof_numbering, only: numbering
   use joint_operator, only: jump_operator
-  use kinds, only: rk
   use point_groups, only: group_list, group_points
   implicit none
   private

@@ -11,7 +11,7 @@ module condensation
   use joint_rows, only: num_rows
   use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
-  use joint_iteration, only: start_iteration, excess_traction, closed_tangent
+  use joint_iteration, only: joint_increment, start_iteration, excess_traction, closed_tangent
   use block_compliance, only: few_points, take_blocks
   use contact_scaling, only: find_contact_scale
   use joint_compliance, only: find_compliance, find_own_rows
@@ -65,11 +65,11 @@ module condensation
     !> One solve: forward substitution, the iteration on the jumps, backward substitution.
     module subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
       implicit none
-      class(condensed_equilibrium), intent(inout) :: self
+      class(condensed_equilibrium), intent(inout), target :: self
       type(force_balance), intent(in) :: balance
-      type(dam_joint), intent(in) :: joints(:)
-      type(joint_state), intent(in) :: old(:)
-      type(joint_state), intent(inout) :: new(:)
+      type(dam_joint), intent(in), target :: joints(:)
+      type(joint_state), intent(in), target :: old(:)
+      type(joint_state), intent(inout), target :: new(:)
       real(rk), intent(out) :: x(:)
       type(balance_outcome), intent(out) :: outcome
       type(error_type), allocatable, intent(out) :: error

@@ -28,22 +28,24 @@ contains
   !> blocks of G that are left out move the jumps. Without the Schur block it takes two full solves:
   !> one for the guess, one for the change.
   module subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
-    class(condensed_equilibrium), intent(inout) :: self
+    class(condensed_equilibrium), intent(inout), target :: self
     type(force_balance), intent(in) :: balance
-    type(dam_joint), intent(in) :: joints(:)
-    type(joint_state), intent(in) :: old(:)
-    type(joint_state), intent(inout) :: new(:)
+    type(dam_joint), intent(in), target :: joints(:)
+    type(joint_state), intent(in), target :: old(:)
+    type(joint_state), intent(inout), target :: new(:)
     real(rk), intent(out) :: x(:)
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
-    type(joint_field) :: field, start
+    type(joint_increment) :: now
+    type(joint_field) :: start
     type(pass_history) :: passes
     real(rk), dimension(3, self%operator%num_points) :: excess, last_excess, exact
     real(rk), allocatable :: half(:)
     integer :: pass, iterations
     iterations = 0
-    associate (k_ref => self%condensed%k_ref, operator => self%operator)
-      call start_iteration(balance, joints, operator, k_ref, self%condensed%scale, old, field, new)
+    call now%view(self%controls, joints, self%operator, self%condensed%k_ref, old, new)
+    call start_iteration(balance, self%condensed%scale, now)
+    associate (k_ref => self%condensed%k_ref, operator => self%operator, field => now%field)
       last_excess = excess_traction(k_ref, field%jump, balance%offset, field%iterate)
       call begin_solve(self, balance, last_excess, half, x, error)
       if (allocated(error)) return
@@ -54,9 +56,9 @@ contains
       do pass = 1, most_passes
         call self%costs%start('iterate', 'joints', 'joint')
         if (self%controls%most_unsaved < huge(1)) start = field
-        call iterate_on_jumps(self%condensed, self%controls, joints, operator, old, field, new, &
-                              outcome)
+        call iterate_on_jumps(self%condensed, now)
         call self%costs%stop()
+        outcome = now%outcome
         if (outcome%iterations > self%controls%most_unsaved) then
           call save_increment(self, balance, joints, old, start, error)
           if (allocated(error)) return
@@ -73,12 +75,12 @@ contains
         last_excess = excess
         if (field%drift <= self%admissible_drift() .and. .not. self%condensed%is_rough) exit
         call start_pass(self, field, passes)
-        call linearise_again(self%condensed, joints, operator, old, field, new)
+        call linearise_again(self%condensed, now)
       end do
     end associate
     outcome%has_converged = pass <= most_passes
     if (.not. outcome%has_converged) then
-      outcome%unmet = unmet_criterion(of_jumps, field%drift, self%admissible_drift())
+      outcome%unmet = unmet_criterion(of_jumps, now%field%drift, self%admissible_drift())
     end if
     self%excess = excess
     call end_solve(self, balance%is_partial, excess - last_excess, half, x, error)

@@ -11,9 +11,8 @@ module contact_sweeps
   use contact_scaling, only: open_group
   use coupling_block, only: add_product
   use joint_forces, only: joint_field
-  use joint_law, only: joint_state, is_bare, state_bonded
-  use joint_operator, only: jump_operator
-  use joint_points, only: dam_joint
+  use joint_iteration, only: joint_increment
+  use joint_law, only: is_bare, state_bonded
   use joint_rows, only: num_axes, row_of
   use kinds, only: rk
   use ranks, only: add_over_ranks
@@ -34,33 +33,29 @@ module contact_sweeps
 contains
 
   !> Limits of friction by the laws; bonded points are those of the last evaluation.
-  subroutine gather_points(joints, operator, k_ref, weight, old, new, points)
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+  subroutine gather_points(now, weight, points)
+    type(joint_increment), intent(in) :: now
     real(rk), intent(in) :: weight !< of the joint forces
-    type(joint_state), intent(in) :: old(:) !< converged histories
-    type(joint_state), intent(in) :: new(:) !< of the last evaluation
     type(swept_points), intent(out) :: points
     real(rk) :: strength
     integer :: j, p, first, last
-    points%share = weight*operator%area
-    points%spring = 1.0_rk/(spread(points%share, 1, 3)*k_ref)
-    associate (n => operator%num_points)
+    points%share = weight*now%operator%area
+    points%spring = 1.0_rk/(spread(points%share, 1, 3)*now%k_ref)
+    associate (n => now%operator%num_points)
       allocate (points%friction(n), points%cohesion(n), points%slip(2, n), points%is_bonded(n))
     end associate
-    do j = 1, size(joints)
-      first = operator%first_point(j)
-      last = operator%first_point(j + 1) - 1
+    do j = 1, size(now%joints)
+      first = now%operator%first_point(j)
+      last = now%operator%first_point(j + 1) - 1
       if (last < first) cycle
-      call joints(j)%law%limits(points%friction(first), points%cohesion(first), strength)
+      call now%joints(j)%law%limits(points%friction(first), points%cohesion(first), strength)
       points%friction(first:last) = points%friction(first)
       points%cohesion(first:last) = points%cohesion(first)
       do p = first, last
-        if (is_bare(old(j), p - first + 1)) points%cohesion(p) = 0.0_rk
+        if (is_bare(now%old(j), p - first + 1)) points%cohesion(p) = 0.0_rk
       end do
-      points%slip(:, first:last) = old(j)%slip
-      points%is_bonded(first:last) = new(j)%status == state_bonded
+      points%slip(:, first:last) = now%old(j)%slip
+      points%is_bonded(first:last) = now%new(j)%status == state_bonded
     end do
   end subroutine gather_points
 

@@ -8,7 +8,7 @@ module joint_forces
   use contact_scaling, only: contact_scale
   implicit none
   private
-  public :: joint_field, tresca_limits, start_joints, reference_stiffness
+  public :: joint_field, start_joints, reference_stiffness
   public :: evaluate_joints, gather_tractions, gather_jumps, gather_gaps, linear_tractions
   public :: take_origins, size_of_origins
 

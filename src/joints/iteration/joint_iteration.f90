@@ -11,12 +11,29 @@ module joint_iteration
   use contact_scaling, only: contact_scale
   use contact_augmentation, only: start_multiplier, measure_contact, update_multiplier
   use equilibrium, only: force_balance, balance_outcome
+  use step_plan, only: step_controls
   use tresca_friction, only: evaluate_tresca
   implicit none
   private
-  public :: iteration_history, start_iteration, linearise, take_step, excess_traction
+  public :: joint_increment, iteration_history, start_iteration, linearise, take_step
+  public :: excess_traction
   public :: closed_tangent, measure_residual, measure_correction, goes_on, close_iteration
   public :: smallest_force
+
+  !> The joints of an increment and the state of their iteration. The pointers are views of what
+  !> the caller owns: an increment must not outlive it.
+  type :: joint_increment
+    type(step_controls), pointer :: controls => null()
+    type(dam_joint), pointer :: joints(:) => null()
+    type(jump_operator), pointer :: operator => null()
+    real(rk), pointer :: k_ref(:, :) => null() !< (3, points) stiffness of the closed joint [Pa/m]
+    type(joint_state), pointer :: old(:) => null() !< converged histories
+    type(joint_state), pointer :: new(:) => null() !< histories of the last evaluation
+    type(joint_field) :: field !< jumps, tractions and tangents of the last evaluation
+    type(balance_outcome) :: outcome
+  contains
+    procedure :: view
+  end type joint_increment
 
   !> Residuals of one run of Newton's iteration.
   type :: iteration_history
@@ -55,86 +72,92 @@ module joint_iteration
 
 contains
 
+  !> Makes the pointers views of the arguments.
+  subroutine view(self, controls, joints, operator, k_ref, old, new)
+    class(joint_increment), intent(inout) :: self
+    type(step_controls), intent(in), target :: controls
+    type(dam_joint), intent(in), target :: joints(:)
+    type(jump_operator), intent(in), target :: operator
+    real(rk), intent(in), target :: k_ref(:, :) !< (3, points) [Pa/m]
+    type(joint_state), intent(in), target :: old(:)
+    type(joint_state), intent(inout), target :: new(:)
+    self%controls => controls
+    self%joints => joints
+    self%operator => operator
+    self%k_ref => k_ref
+    self%old => old
+    self%new => new
+  end subroutine view
+
   !> Linearises the laws at the guess, or takes all joints as closed and sticking.
-  subroutine start_iteration(balance, joints, operator, k_ref, scale, old, field, new)
+  subroutine start_iteration(balance, scale, now)
     type(force_balance), intent(in) :: balance
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) stiffness of the closed joint [Pa/m]
     type(contact_scale), intent(in) :: scale
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(out) :: field
-    type(joint_state), intent(inout) :: new(:)
+    type(joint_increment), intent(inout) :: now !< with its views
     integer :: n
-    n = operator%num_points
-    allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
-    allocate (field%start_jump(3, n))
-    allocate (field%num_openings(n), source=0)
-    allocate (field%is_open(n), source=.false.)
-    field%scale = scale
-    field%scale%own = first_share*scale%own
-    field%bulk_force = balance%reference_force
-    field%is_static = balance%is_static
-    field%jump = balance%guess
-    field%response = balance%guess
-    call gather_tractions(operator, old, field%traction)
-    call gather_jumps(operator, old, field%start_jump)
-    field%origin_size = size_of_origins(old)
-    field%start_spring = field%traction/k_ref
-    call start_multiplier(joints, old, new, field%contact)
-    call gather_gaps(operator, new, field%gap)
-    field%start_force = norm(spread(operator%area, 1, 3)*field%traction)
-    field%multiplier = field%traction
-    if (allocated(balance%guess_traction)) field%multiplier = balance%guess_traction
-    field%tangent = closed_tangent(k_ref)
-    if (.not. balance%starts_closed) then
+    n = now%operator%num_points
+    associate (field => now%field, k_ref => now%k_ref)
+      allocate (field%traction(3, n), field%iterate(3, n), field%tangent(3, 3, n))
+      allocate (field%start_jump(3, n))
+      allocate (field%num_openings(n), source=0)
+      allocate (field%is_open(n), source=.false.)
+      field%scale = scale
+      field%scale%own = first_share*scale%own
+      field%bulk_force = balance%reference_force
+      field%is_static = balance%is_static
+      field%jump = balance%guess
+      field%response = balance%guess
+      call gather_tractions(now%operator, now%old, field%traction)
+      call gather_jumps(now%operator, now%old, field%start_jump)
+      field%origin_size = size_of_origins(now%old)
+      field%start_spring = field%traction/k_ref
+      call start_multiplier(now%joints, now%old, now%new, field%contact)
+      call gather_gaps(now%operator, now%new, field%gap)
+      field%start_force = norm(spread(now%operator%area, 1, 3)*field%traction)
+      field%multiplier = field%traction
+      if (allocated(balance%guess_traction)) field%multiplier = balance%guess_traction
+      field%tangent = closed_tangent(k_ref)
+      if (balance%starts_closed) then
+        field%iterate = k_ref*field%jump
+        return
+      end if
       ! A point that is open in the guess has not opened in this increment.
       field%is_open = .true.
-      call linearise(joints, operator, old, k_ref, field, new)
-      return
-    end if
-    field%iterate = k_ref*field%jump
+    end associate
+    call linearise(now)
   end subroutine start_iteration
 
   !> Evaluates the laws and adds the smallest stiffness where a joint is open or slides.
-  subroutine linearise(joints, operator, old, k_ref, field, new)
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
+  subroutine linearise(now)
+    type(joint_increment), intent(inout) :: now
     integer :: p, i
-    if (allocated(field%tresca%bound)) then
-      call evaluate_tresca(k_ref, field)
-    else
-      field%was_open = field%is_open
-      call evaluate_joints(joints, operator, old, field, new)
-      where (field%is_open .and. .not. field%was_open) field%num_openings = field%num_openings + 1
-    end if
-    do p = 1, operator%num_points
-      do i = 1, 3
-        if (field%tangent(i, i, p) < k_ref(i, p)) then
-          field%tangent(i, i, p) = field%tangent(i, i, p) + stiffness_floor*k_ref(i, p)
-        end if
+    associate (field => now%field, k_ref => now%k_ref)
+      if (allocated(field%tresca%bound)) then
+        call evaluate_tresca(k_ref, field)
+      else
+        field%was_open = field%is_open
+        call evaluate_joints(now%joints, now%operator, now%old, field, now%new)
+        where (field%is_open .and. .not. field%was_open) field%num_openings = field%num_openings + 1
+      end if
+      do p = 1, now%operator%num_points
+        do i = 1, 3
+          if (field%tangent(i, i, p) < k_ref(i, p)) then
+            field%tangent(i, i, p) = field%tangent(i, i, p) + stiffness_floor*k_ref(i, p)
+          end if
+        end do
       end do
-    end do
+    end associate
   end subroutine linearise
 
   !> Moves to the solution of the linearised equilibrium and evaluates the laws there.
-  subroutine take_step(joints, operator, old, k_ref, correction, linear, field, new)
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+  subroutine take_step(correction, linear, now)
     real(rk), intent(in) :: correction(:, :) !< (3, points) of the jumps [m]
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the solution [Pa]
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    field%response = field%jump + correction
-    field%jump = field%response
-    field%multiplier = linear
-    call linearise(joints, operator, old, k_ref, field, new)
+    type(joint_increment), intent(inout) :: now
+    now%field%response = now%field%jump + correction
+    now%field%jump = now%field%response
+    now%field%multiplier = linear
+    call linearise(now)
   end subroutine take_step
 
   !> Whether the residuals of the last iterations repeat those before them, with any period. The
@@ -154,67 +177,61 @@ contains
 
   !> Whether Newton's iteration goes on: up to the number of *CONTROLS, and beyond it while the
   !> residual decreases.
-  pure logical function goes_on(history, outcome, most)
+  pure logical function goes_on(history, now)
     type(iteration_history), intent(in) :: history
-    type(balance_outcome), intent(in) :: outcome
-    integer, intent(in) :: most !< ITERATIONS
+    type(joint_increment), intent(in) :: now
     integer :: iteration
-    iteration = outcome%iterations - outcome%pass_start
-    goes_on = .not. history%has_ended .and. &
-              (iteration < most .or. (iteration < most_attempts*most .and. &
-                                      iteration - history%least < gaining))
+    iteration = now%outcome%iterations - now%outcome%pass_start
+    associate (most => now%controls%max_iterations)
+      goes_on = .not. history%has_ended .and. &
+                (iteration < most .or. (iteration < most_attempts*most .and. &
+                                        iteration - history%least < gaining))
+    end associate
   end function goes_on
 
   !> Ends an iteration: augments the contact of joints in equilibrium, and looks for cycles.
-  subroutine close_iteration(joints, operator, old, k_ref, field, new, outcome, history)
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+  subroutine close_iteration(now, history)
+    type(joint_increment), intent(inout) :: now
     type(iteration_history), intent(inout) :: history
     integer :: iteration
-    if (outcome%has_converged) then
-      call augment_contact(joints, operator, old, k_ref, field, new, outcome)
-      history%has_ended = outcome%has_converged .or. outcome%gives_up
-      if (history%has_ended) return
-    end if
-    iteration = outcome%iterations - outcome%pass_start
-    if (iteration == 0) history%unbalance = [real(rk) ::]
-    if (iteration == 0) return
-    history%unbalance = [history%unbalance, outcome%unbalance]
-    history%least = minloc(history%unbalance, 1)
-    history%has_ended = is_cycling(history%unbalance)
-    outcome%is_loose = history%has_ended .and. outcome%is_driven
+    associate (outcome => now%outcome)
+      if (outcome%has_converged) then
+        call augment_contact(now)
+        history%has_ended = outcome%has_converged .or. outcome%gives_up
+        if (history%has_ended) return
+      end if
+      iteration = outcome%iterations - outcome%pass_start
+      if (iteration == 0) history%unbalance = [real(rk) ::]
+      if (iteration == 0) return
+      history%unbalance = [history%unbalance, outcome%unbalance]
+      history%least = minloc(history%unbalance, 1)
+      history%has_ended = is_cycling(history%unbalance)
+      outcome%is_loose = history%has_ended .and. outcome%is_driven
+    end associate
   end subroutine close_iteration
 
   !> Augments the contact where points penetrate more than their law allows. The laws are then
   !> linearised at the equilibrium found, and the iteration continues.
-  subroutine augment_contact(joints, operator, old, k_ref, field, new, outcome)
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+  subroutine augment_contact(now)
+    type(joint_increment), intent(inout) :: now
     integer :: worst_point
-    if (.not. field%contact%is_there .or. allocated(field%tresca%bound)) return
-    call measure_contact(joints, operator, new, field%contact, outcome%penetration, worst_point)
-    if (outcome%penetration <= 1.0_rk) return
-    outcome%has_converged = .false.
-    outcome%worst_point = worst_point
-    outcome%gives_up = outcome%augmentations >= most_augmentations
-    if (outcome%gives_up) return
-    outcome%augmentations = outcome%augmentations + 1
-    if (outcome%augmentations == 1) outcome%first_pass = outcome%iterations
-    outcome%pass_start = outcome%iterations
-    call update_multiplier(joints, operator, field%scale%shared/k_ref(1, :), &
-                           field%contact, new)
-    call gather_gaps(operator, new, field%gap)
-    call linearise(joints, operator, old, k_ref, field, new)
+    associate (field => now%field, outcome => now%outcome)
+      if (.not. field%contact%is_there .or. allocated(field%tresca%bound)) return
+      call measure_contact(now%joints, now%operator, now%new, field%contact, outcome%penetration, &
+                           worst_point)
+      if (outcome%penetration <= 1.0_rk) return
+      outcome%has_converged = .false.
+      outcome%worst_point = worst_point
+      outcome%gives_up = outcome%augmentations >= most_augmentations
+      if (outcome%gives_up) return
+      outcome%augmentations = outcome%augmentations + 1
+      if (outcome%augmentations == 1) outcome%first_pass = outcome%iterations
+      outcome%pass_start = outcome%iterations
+      call update_multiplier(now%joints, now%operator, field%scale%shared/now%k_ref(1, :), &
+                             field%contact, now%new)
+      call gather_gaps(now%operator, now%new, field%gap)
+    end associate
+    call linearise(now)
   end subroutine augment_contact
 
   !> Tangents of closed, sticking joints.
@@ -241,28 +258,27 @@ contains
   end function excess_traction
 
   !> Residual: forces of the laws minus linearised forces, over the norm of the joint forces.
-  subroutine measure_residual(operator, k_ref, field, linear, outcome)
-    type(jump_operator), intent(in) :: operator
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
-    type(joint_field), intent(in) :: field !< at the new jumps
+  subroutine measure_residual(linear, now)
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the linearised solution [Pa]
-    type(balance_outcome), intent(inout) :: outcome
-    real(rk), dimension(operator%num_points) :: unbalance, square
+    type(joint_increment), intent(inout) :: now !< its field at the new jumps
+    real(rk), dimension(now%operator%num_points) :: unbalance, square
     real(rk) :: force, kept
     integer :: p
-    do p = 1, operator%num_points
-      unbalance(p) = operator%area(p)*sqrt(sum((field%traction(:, p) - linear(:, p))**2))
-      square(p) = sum((operator%area(p)*field%traction(:, p))**2)
-    end do
-    force = max(sqrt(total(square)), smallest_force(field))
-    kept = 0.0_rk
-    if (field%is_static) kept = norm(stiffness_floor*spread(operator%area, 1, 3)*k_ref*field%jump)
-    if (kept <= most_kept*field%bulk_force .or. most_kept*kept > field%bulk_force) kept = 0.0_rk
-    outcome%unbalance = length(unbalance)/force
-    outcome%residual = max(outcome%unbalance, kept/force)
-    outcome%is_loose = .false.
-    outcome%is_driven = kept > 0.0_rk
-    outcome%worst_point = maxloc(unbalance, 1)
+    associate (field => now%field, outcome => now%outcome, area => now%operator%area)
+      do p = 1, size(unbalance)
+        unbalance(p) = area(p)*sqrt(sum((field%traction(:, p) - linear(:, p))**2))
+        square(p) = sum((area(p)*field%traction(:, p))**2)
+      end do
+      force = max(sqrt(total(square)), smallest_force(field))
+      kept = 0.0_rk
+      if (field%is_static) kept = norm(stiffness_floor*spread(area, 1, 3)*now%k_ref*field%jump)
+      if (kept <= most_kept*field%bulk_force .or. most_kept*kept > field%bulk_force) kept = 0.0_rk
+      outcome%unbalance = length(unbalance)/force
+      outcome%residual = max(outcome%unbalance, kept/force)
+      outcome%is_loose = .false.
+      outcome%is_driven = kept > 0.0_rk
+      outcome%worst_point = maxloc(unbalance, 1)
+    end associate
   end subroutine measure_residual
 
   !> Least force that residuals are divided by.
@@ -275,19 +291,18 @@ contains
   !> prevents jumps, the increment of traction/k_ref is the measure. Jumps that count from a grouted
   !> opening have the round-off of that opening. A residual of round-off always counts as converged:
   !> where nothing resists, round-off gives a large correction.
-  subroutine measure_correction(field, k_ref, correction, tolerance, outcome)
-    type(joint_field), intent(in) :: field
-    real(rk), intent(in) :: k_ref(:, :) !< (3, points) [Pa/m]
+  subroutine measure_correction(correction, now)
     real(rk), intent(in) :: correction(:, :) !< (3, points) [m]
-    real(rk), intent(in) :: tolerance
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now
     real(rk) :: increment, spring(3, size(correction, 2))
-    spring = field%traction/k_ref
-    increment = max(distance(field%jump, field%start_jump), smallest_increment*norm(field%jump), &
-                    distance(spring, field%start_spring), smallest_increment*norm(spring), &
-                    smallest_increment*field%origin_size, tiny(1.0_rk))
-    outcome%correction = norm(correction)/increment
-    outcome%has_converged = outcome%correction <= tolerance .or. &
-                            outcome%residual <= smallest_residual
+    associate (field => now%field, outcome => now%outcome)
+      spring = field%traction/now%k_ref
+      increment = max(distance(field%jump, field%start_jump), smallest_increment*norm(field%jump), &
+                      distance(spring, field%start_spring), smallest_increment*norm(spring), &
+                      smallest_increment*field%origin_size, tiny(1.0_rk))
+      outcome%correction = norm(correction)/increment
+      outcome%has_converged = outcome%correction <= now%controls%increment_tolerance .or. &
+                              outcome%residual <= smallest_residual
+    end associate
   end subroutine measure_correction
 end module joint_iteration

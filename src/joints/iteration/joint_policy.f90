@@ -23,12 +23,10 @@ module joint_policy
   use contact_sweeps, only: gather_points, sweep_contacts, swept_points
   use equilibrium, only: balance_outcome, is_dropped
   use joint_forces, only: joint_field
-  use joint_iteration, only: linearise, measure_residual
+  use joint_iteration, only: joint_increment, linearise, measure_residual
   use joint_law, only: joint_state
   use joint_operator, only: jump_operator
   use joint_parting, only: count_parted
-  use joint_points, only: dam_joint
-  use step_plan, only: step_controls
   use tresca_friction, only: update_bound
   implicit none
   private
@@ -54,27 +52,19 @@ module joint_policy
 
   abstract interface
     !> Newton's iteration from the linearised field, until it converges or shall end.
-    subroutine run_newton(self, controls, joints, operator, old, field, new, outcome)
-      import :: joint_process, step_controls, dam_joint, jump_operator, joint_state, joint_field, &
-        balance_outcome
+    subroutine run_newton(self, now)
+      import :: joint_process, joint_increment
       implicit none
       class(joint_process), intent(inout) :: self
-      type(step_controls), intent(in) :: controls
-      type(dam_joint), intent(in) :: joints(:)
-      type(jump_operator), intent(in) :: operator
-      type(joint_state), intent(in) :: old(:)
-      type(joint_field), intent(inout) :: field
-      type(joint_state), intent(inout) :: new(:)
-      type(balance_outcome), intent(inout) :: outcome
+      type(joint_increment), intent(inout) :: now
     end subroutine run_newton
 
     !> The response to the linearised joints of a field with new jumps.
-    subroutine find_response(self, operator, field)
-      import :: joint_process, jump_operator, joint_field
+    subroutine find_response(self, now)
+      import :: joint_process, joint_increment
       implicit none
       class(joint_process), intent(in) :: self
-      type(jump_operator), intent(in) :: operator
-      type(joint_field), intent(inout) :: field
+      type(joint_increment), intent(inout) :: now
     end subroutine find_response
 
     !> `closed_jump`, where it is not known yet.
@@ -98,148 +88,116 @@ module joint_policy
 
 contains
 
-  !> Iterates until the joints are in equilibrium, or every way has failed. On return `field%jump`
-  !> and `field%iterate` hold the jumps and tractions of the solution, `new` the histories there.
-  subroutine iterate_joints(process, controls, joints, operator, old, field, new, outcome)
+  !> Iterates until the joints are in equilibrium, or every way has failed. On return `jump` and
+  !> `iterate` of the field hold the jumps and tractions of the solution, `new` the histories there.
+  subroutine iterate_joints(process, now)
     class(joint_process), intent(inout) :: process
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field !< linearised
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
-    call find_equilibrium(process, controls, joints, operator, old, field, new, outcome)
-    if (.not. outcome%has_converged) return
-    call try_full_laws(process, controls, joints, operator, old, field, new, outcome)
+    type(joint_increment), intent(inout) :: now !< linearised
+    call find_equilibrium(process, now)
+    if (.not. now%outcome%has_converged) return
+    call try_full_laws(process, now)
   end subroutine iterate_joints
 
   !> Newton's iteration, sweeps and passes in turn.
-  subroutine find_equilibrium(process, controls, joints, operator, old, field, new, outcome)
+  subroutine find_equilibrium(process, now)
     class(joint_process), intent(inout) :: process
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field !< linearised
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
-    call process%run_newton(controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, controls, outcome)) return
-    call process%find_closed(operator)
-    field%scale = process%scale
+    type(joint_increment), intent(inout) :: now !< linearised
+    call process%run_newton(now)
+    if (is_done(process, now)) return
+    call process%find_closed(now%operator)
+    now%field%scale = process%scale
     process%num_sweeps = first_sweeps
-    call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, controls, outcome) .or. outcome%is_loose) return
-    call run_passes(process, controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, controls, outcome)) return
+    call try_sweeps(process, now)
+    if (is_done(process, now) .or. now%outcome%is_loose) return
+    call run_passes(process, now)
+    if (is_done(process, now)) return
     process%num_sweeps = last_sweeps
-    call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
-    if (.not. allocated(field%tresca%bound)) return
-    call judge_by_laws(process, controls, joints, operator, old, field, new, outcome)
-    if (is_done(process, controls, outcome)) return
-    call linearise_anew(process, joints, operator, old, field, new, outcome)
-    call try_sweeps(process, controls, joints, operator, old, field, new, outcome)
+    call try_sweeps(process, now)
+    if (.not. allocated(now%field%tresca%bound)) return
+    call judge_by_laws(now)
+    if (is_done(process, now)) return
+    call linearise_anew(process, now)
+    call try_sweeps(process, now)
   end subroutine find_equilibrium
 
   !> Newton's iteration as if no point had parted, from an equilibrium with parted points and, where
   !> that does not converge in statics, from sweeps: iterates on the way to the equilibrium may have
   !> opened points that stay closed. An equilibrium in which fewer points have parted counts, else
   !> the one before.
-  subroutine try_full_laws(process, controls, joints, operator, old, field, new, outcome)
+  subroutine try_full_laws(process, now)
     class(joint_process), intent(inout) :: process
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field !< in equilibrium
-    type(joint_state), intent(inout) :: new(:) !< in equilibrium
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now !< in equilibrium
     type(joint_field) :: kept_field
     type(joint_state), allocatable :: kept_state(:)
     type(balance_outcome) :: kept_outcome
     real(rk), allocatable :: kept_x(:)
     integer :: num_parted
-    num_parted = count_parted(joints, operator, field%is_static, old, new)
+    num_parted = count_parted(now)
     if (num_parted == 0) return
-    kept_field = field
-    kept_state = new
-    kept_outcome = outcome
+    kept_field = now%field
+    kept_state = now%new
+    kept_outcome = now%outcome
     if (allocated(process%x)) kept_x = process%x
-    field%num_openings = 0
-    call linearise_anew(process, joints, operator, old, field, new, outcome)
-    call process%run_newton(controls, joints, operator, old, field, new, outcome)
-    if (.not. is_done(process, controls, outcome)) then
-      if (field%is_static .and. allocated(process%opened)) then
-        call process%find_closed(operator)
-        field%scale = process%scale
-        field%num_openings = 0
-        call run_sweeps(process, joints, operator, old, first_sweeps(1), field, new, outcome)
-        call process%run_newton(controls, joints, operator, old, field, new, outcome)
+    now%field%num_openings = 0
+    call linearise_anew(process, now)
+    call process%run_newton(now)
+    if (.not. is_done(process, now)) then
+      if (now%field%is_static .and. allocated(process%opened)) then
+        call process%find_closed(now%operator)
+        now%field%scale = process%scale
+        now%field%num_openings = 0
+        call run_sweeps(process, first_sweeps(1), now)
+        call process%run_newton(now)
       end if
     end if
-    if (outcome%has_converged .and. .not. allocated(process%failure)) then
-      if (count_parted(joints, operator, field%is_static, old, new) < num_parted) return
+    if (now%outcome%has_converged .and. .not. allocated(process%failure)) then
+      if (count_parted(now) < num_parted) return
     end if
     if (allocated(process%failure)) deallocate (process%failure)
-    kept_outcome%iterations = outcome%iterations
-    kept_outcome%sweeps = outcome%sweeps
-    field = kept_field
-    new = kept_state
-    outcome = kept_outcome
+    kept_outcome%iterations = now%outcome%iterations
+    kept_outcome%sweeps = now%outcome%sweeps
+    now%field = kept_field
+    now%new = kept_state
+    now%outcome = kept_outcome
     if (allocated(process%x)) process%x = kept_x
   end subroutine try_full_laws
 
   !> Gives up the limits of friction of the last pass. Their equilibrium counts if the laws have the
   !> same tractions there, within the tolerance of the residual.
-  subroutine judge_by_laws(process, controls, joints, operator, old, field, new, outcome)
-    class(joint_process), intent(in) :: process
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: linear(3, operator%num_points) ! tractions of the equilibrium [Pa]
-    linear = field%iterate
-    deallocate (field%tresca%bound)
-    if (.not. outcome%has_converged) return
-    call linearise(joints, operator, old, process%k_ref, field, new)
-    call measure_residual(operator, process%k_ref, field, linear, outcome)
-    outcome%has_converged = outcome%residual <= controls%residual_tolerance
-    if (outcome%has_converged) field%iterate = linear
+  subroutine judge_by_laws(now)
+    type(joint_increment), intent(inout) :: now
+    real(rk) :: linear(3, now%operator%num_points) ! tractions of the equilibrium [Pa]
+    linear = now%field%iterate
+    deallocate (now%field%tresca%bound)
+    if (.not. now%outcome%has_converged) return
+    call linearise(now)
+    call measure_residual(linear, now)
+    now%outcome%has_converged = now%outcome%residual <= now%controls%residual_tolerance
+    if (now%outcome%has_converged) now%field%iterate = linear
   end subroutine judge_by_laws
 
   !> Sweeps and Newton's iteration in turn, until it converges or drives a block away twice.
-  subroutine try_sweeps(process, controls, joints, operator, old, field, new, outcome)
+  subroutine try_sweeps(process, now)
     class(joint_process), intent(inout) :: process
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now
     logical :: was_loose
     integer :: k
     if (.not. allocated(process%opened)) return
     do k = 1, size(process%num_sweeps)
-      was_loose = outcome%is_loose
-      call run_sweeps(process, joints, operator, old, process%num_sweeps(k), field, new, outcome)
-      call process%run_newton(controls, joints, operator, old, field, new, outcome)
-      if (is_done(process, controls, outcome) .or. (was_loose .and. outcome%is_loose)) return
-      outcome%is_loose = outcome%is_loose .and. k < size(process%num_sweeps)
+      was_loose = now%outcome%is_loose
+      call run_sweeps(process, process%num_sweeps(k), now)
+      call process%run_newton(now)
+      if (is_done(process, now) .or. (was_loose .and. now%outcome%is_loose)) return
+      now%outcome%is_loose = now%outcome%is_loose .and. k < size(process%num_sweeps)
     end do
   end subroutine try_sweeps
 
   !> Whether nothing is left to do.
-  logical function is_done(process, controls, outcome)
+  logical function is_done(process, now)
     class(joint_process), intent(in) :: process
-    type(step_controls), intent(in) :: controls
-    type(balance_outcome), intent(in) :: outcome
-    is_done = outcome%has_converged .or. outcome%gives_up .or. allocated(process%failure)
-    if (.not. is_done) is_done = is_dropped(controls)
+    type(joint_increment), intent(in) :: now
+    is_done = now%outcome%has_converged .or. now%outcome%gives_up .or. allocated(process%failure)
+    if (.not. is_done) is_done = is_dropped(now%controls)
   end function is_done
 
   !> Jumps that tractions cause with closed joints.
@@ -263,100 +221,79 @@ contains
   end function share_of
 
   !> Sweeps over the points from the last forces, and linearises the laws at what they find.
-  subroutine run_sweeps(process, joints, operator, old, num_sweeps, field, new, outcome)
+  subroutine run_sweeps(process, num_sweeps, now)
     class(joint_process), intent(inout) :: process
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
     integer, intent(in) :: num_sweeps
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now
     type(swept_points) :: points
-    call gather_points(joints, operator, process%k_ref, process%weight, old, new, points)
+    call gather_points(now, process%weight, points)
     call sweep_contacts(process%blocks, process%opened, points, process%closed_jump, num_sweeps, &
-                        process%force, field)
-    call linearise_anew(process, joints, operator, old, field, new, outcome)
-    outcome%sweeps = outcome%sweeps + num_sweeps
+                        process%force, now%field)
+    call linearise_anew(process, now)
+    now%outcome%sweeps = now%outcome%sweeps + num_sweeps
   end subroutine run_sweeps
 
   !> Passes with given limits of friction; Newton's iteration with the laws when the limits change
   !> little.
-  subroutine run_passes(process, controls, joints, operator, old, field, new, outcome)
+  subroutine run_passes(process, now)
     class(joint_process), intent(inout) :: process
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now
     type(joint_field) :: last
     type(mixer) :: mixing
-    real(rk) :: bound(operator%num_points), change
+    real(rk) :: bound(now%operator%num_points), change
     integer :: pass, next
-    call start_passes(process, joints, operator, old, field, new, outcome)
+    call start_passes(process, now)
     next = 1
     do pass = 1, most_passes
-      bound = field%tresca%bound
-      call linearise_anew(process, joints, operator, old, field, new, outcome)
-      call process%run_newton(controls, joints, operator, old, field, new, outcome)
-      outcome%passes = outcome%passes + 1
+      bound = now%field%tresca%bound
+      call linearise_anew(process, now)
+      call process%run_newton(now)
+      now%outcome%passes = now%outcome%passes + 1
       if (allocated(process%failure)) return
-      call update_bound(field)
-      change = norm(field%tresca%bound - bound)/max(norm(bound), tiny(1.0_rk))
-      field%tresca%bound = field%tresca%bound - bound
-      call mixing%advance(field%tresca%bound, bound)
-      field%tresca%bound = max(bound, 0.0_rk)
-      if (.not. outcome%has_converged .or. change > small_changes(next)) cycle
-      last = field
-      deallocate (field%tresca%bound)
-      call linearise_anew(process, joints, operator, old, field, new, outcome)
-      call process%run_newton(controls, joints, operator, old, field, new, outcome)
+      call update_bound(now%field)
+      change = norm(now%field%tresca%bound - bound)/max(norm(bound), tiny(1.0_rk))
+      now%field%tresca%bound = now%field%tresca%bound - bound
+      call mixing%advance(now%field%tresca%bound, bound)
+      now%field%tresca%bound = max(bound, 0.0_rk)
+      if (.not. now%outcome%has_converged .or. change > small_changes(next)) cycle
+      last = now%field
+      deallocate (now%field%tresca%bound)
+      call linearise_anew(process, now)
+      call process%run_newton(now)
       next = next + 1
-      if (is_done(process, controls, outcome) .or. next > size(small_changes)) return
-      field = last
+      if (is_done(process, now) .or. next > size(small_changes)) return
+      now%field = last
     end do
-    outcome%has_converged = .false.
+    now%outcome%has_converged = .false.
   end subroutine run_passes
 
   !> Limits of friction of the first pass: those of the last sweeps, else of the last increment.
-  subroutine start_passes(process, joints, operator, old, field, new, outcome)
+  subroutine start_passes(process, now)
     class(joint_process), intent(inout) :: process
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now
     type(swept_points) :: points
     if (allocated(process%opened)) then
-      call run_sweeps(process, joints, operator, old, 1, field, new, outcome)
+      call run_sweeps(process, 1, now)
     else
-      field%multiplier = process%k_ref*field%start_spring
-      field%jump = field%start_jump
+      now%field%multiplier = now%k_ref*now%field%start_spring
+      now%field%jump = now%field%start_jump
     end if
-    call gather_points(joints, operator, process%k_ref, process%weight, old, new, points)
-    field%tresca%friction = points%friction
-    field%tresca%cohesion = points%cohesion
-    field%tresca%slip = points%slip
-    field%tresca%is_bonded = points%is_bonded
-    call update_bound(field)
+    call gather_points(now, process%weight, points)
+    now%field%tresca%friction = points%friction
+    now%field%tresca%cohesion = points%cohesion
+    now%field%tresca%slip = points%slip
+    now%field%tresca%is_bonded = points%is_bonded
+    call update_bound(now%field)
   end subroutine start_passes
 
   !> Linearises at the jumps and tractions of a field that another iteration has found.
-  subroutine linearise_anew(process, joints, operator, old, field, new, outcome)
+  subroutine linearise_anew(process, now)
     class(joint_process), intent(inout) :: process
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
-    field%is_open = .true. ! what others open does not count as an opening of the iteration
-    call linearise(joints, operator, old, process%k_ref, field, new)
-    call process%find_response(operator, field)
-    outcome%has_converged = .false.
-    outcome%pass_start = outcome%iterations
+    type(joint_increment), intent(inout) :: now
+    now%field%is_open = .true. ! what others open does not count as an opening of the iteration
+    call linearise(now)
+    call process%find_response(now)
+    now%outcome%has_converged = .false.
+    now%outcome%pass_start = now%outcome%iterations
   end subroutine linearise_anew
 end module joint_policy

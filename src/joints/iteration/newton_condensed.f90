@@ -9,15 +9,13 @@
 module newton_condensed
   use kinds, only: rk
   use tangent_equations, only: joint_tangent
-  use joint_law, only: joint_state
-  use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, linear_tractions
-  use joint_iteration, only: iteration_history, measure_residual, measure_correction, take_step, &
-                             linearise, goes_on, close_iteration, smallest_force
+  use joint_iteration, only: joint_increment, iteration_history, measure_residual, &
+                             measure_correction, take_step, linearise, goes_on, close_iteration, &
+                             smallest_force
   use joint_policy, only: joint_process, iterate_joints, jumps_of, share_of
   use equilibrium, only: balance_outcome, is_dropped
-  use step_plan, only: step_controls
   implicit none
   private
   public :: condensed_joints, iterate_on_jumps, start_policy, linearise_again
@@ -49,19 +47,15 @@ module newton_condensed
 
 contains
 
-  !> Iterates on the jumps by the policy of all solvers. On return `field%jump` and `field%iterate`
+  !> Iterates on the jumps by the policy of all solvers. On return its field
   !> hold the jumps and tractions of the solution, `new` the histories there.
-  subroutine iterate_on_jumps(self, controls, joints, operator, old, field, new, outcome)
+  subroutine iterate_on_jumps(self, now)
     class(condensed_joints), intent(inout) :: self
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(out) :: outcome
-    call start_policy(self, operator, field)
-    call iterate_joints(self, controls, joints, operator, old, field, new, outcome)
+    type(joint_increment), intent(inout) :: now !< linearised; its response is for k_ref
+    type(balance_outcome) :: nothing
+    now%outcome = nothing
+    call start_policy(self, now%operator, now%field)
+    call iterate_joints(self, now)
   end subroutine iterate_on_jumps
 
   !> Stores the start of the iteration.
@@ -85,11 +79,10 @@ contains
   end subroutine find_closed
 
   !> The response to the linearised joints of a field with new jumps.
-  subroutine find_response(self, operator, field)
+  subroutine find_response(self, now)
     class(condensed_joints), intent(in) :: self
-    type(jump_operator), intent(in) :: operator
-    type(joint_field), intent(inout) :: field
-    field%response = open_response(self, operator%area, self%closed_jump, field)
+    type(joint_increment), intent(inout) :: now
+    now%field%response = open_response(self, now%operator%area, self%closed_jump, now%field)
   end subroutine find_response
 
   !> Jumps with closed, sticking joints, from the response to the linearised joints.
@@ -113,78 +106,72 @@ contains
 
   !> Linearises the joints at the end of an iteration. The response on entry is that to the forces
   !> at the end.
-  subroutine linearise_again(self, joints, operator, old, field, new)
+  subroutine linearise_again(self, now)
     type(condensed_joints), intent(in) :: self
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    field%multiplier = field%iterate
-    call linearise(joints, operator, old, self%k_ref, field, new)
-    field%response = field%response &
-                     + jumps_of(self, operator%area, field%multiplier - field%iterate)
+    type(joint_increment), intent(inout) :: now
+    now%field%multiplier = now%field%iterate
+    call linearise(now)
+    associate (field => now%field)
+      field%response = field%response &
+                       + jumps_of(self, now%operator%area, field%multiplier - field%iterate)
+    end associate
   end subroutine linearise_again
 
   !> Iterates until residual and correction are within the tolerances, or in a cycle.
-  subroutine run_newton(self, controls, joints, operator, old, field, new, outcome)
+  subroutine run_newton(self, now)
     class(condensed_joints), intent(inout) :: self
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field !< linearised; its response is for k_ref
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
+    type(joint_increment), intent(inout) :: now !< linearised; its response is for k_ref
     type(iteration_history) :: history
     real(rk) :: most ! of all residuals
-    real(rk), dimension(3, operator%num_points) :: correction, linear, rest
+    real(rk), dimension(3, now%operator%num_points) :: correction, linear, rest
     allocate (history%unbalance(0))
     most = 0.0_rk
     self%is_rough = .false.
-    do while (goes_on(history, outcome, controls%max_iterations))
-      if (is_dropped(controls)) return
-      outcome%iterations = outcome%iterations + 1
-      self%tangent%is_single = .not. field%is_static
-      self%tangent%is_static = field%is_static
-      call self%tangent%set_tangent(self%blocks, self%k_ref, self%weight*operator%area, &
-                                    field%tangent)
-      if (self%tangent%is_singular) return ! a smaller increment may avoid it
-      call solve_correction(self, field%response - field%jump, linear_share, &
-                            negligible_force(), correction, rest)
-      call linear_tractions(field, correction, linear)
-      linear = linear + rest/spread(self%weight*operator%area, 1, 3)
-      call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
-      call measure_residual(operator, self%k_ref, field, linear, outcome)
-      most = max(most, outcome%residual)
-      self%is_rough = is_near_enough()
-      if (self%is_rough) then
-        outcome%has_converged = .true.
-        exit
-      end if
-      if (outcome%residual <= controls%residual_tolerance) then
-        call judge_correction(self, excess_jump(field%traction), field%is_static, correction)
-        call measure_correction(field, self%k_ref, correction, &
-                                controls%increment_tolerance, outcome)
-      end if
-      call close_iteration(joints, operator, old, self%k_ref, field, new, outcome, history)
-      if (.not. history%has_ended) field%response = field%response + excess_jump(field%iterate)
-    end do
-    field%iterate = linear
+    associate (field => now%field, outcome => now%outcome, area => now%operator%area)
+      do while (goes_on(history, now))
+        if (is_dropped(now%controls)) return
+        outcome%iterations = outcome%iterations + 1
+        self%tangent%is_single = .not. field%is_static
+        self%tangent%is_static = field%is_static
+        call self%tangent%set_tangent(self%blocks, self%k_ref, self%weight*area, field%tangent)
+        if (self%tangent%is_singular) return ! a smaller increment may avoid it
+        call solve_correction(self, field%response - field%jump, linear_share, &
+                              negligible_force(), correction, rest)
+        call linear_tractions(field, correction, linear)
+        linear = linear + rest/spread(self%weight*area, 1, 3)
+        call take_step(correction, linear, now)
+        call measure_residual(linear, now)
+        most = max(most, outcome%residual)
+        self%is_rough = is_near_enough()
+        if (self%is_rough) then
+          outcome%has_converged = .true.
+          exit
+        end if
+        if (outcome%residual <= now%controls%residual_tolerance) then
+          call judge_correction(self, excess_jump(field%traction), field%is_static, correction)
+          call measure_correction(correction, now)
+        end if
+        call close_iteration(now, history)
+        if (.not. history%has_ended) field%response = field%response + excess_jump(field%iterate)
+      end do
+    end associate
+    now%field%iterate = linear
   contains
     !> Whether a rough equilibrium is found that is not an exact one.
     pure logical function is_near_enough()
-      is_near_enough = outcome%residual <= max(self%rough_share*most, self%rough_residual) &
-                       .and. outcome%residual > controls%residual_tolerance &
-                       .and. .not. allocated(field%tresca%bound)
+      is_near_enough = now%outcome%residual <= max(self%rough_share*most, self%rough_residual) &
+                       .and. now%outcome%residual > now%controls%residual_tolerance &
+                       .and. .not. allocated(now%field%tresca%bound)
     end function is_near_enough
 
     !> Residual of the linear equations that need not be solved for. Where the residual is within
     !> its tolerance, the correction is not, and needs more digits.
     real(rk) function negligible_force()
       negligible_force = 0.0_rk ! [N]
-      if (size(history%unbalance) > 0 .and. outcome%residual <= controls%residual_tolerance) return
-      negligible_force = admissible_share*controls%residual_tolerance*smallest_force(field)
+      associate (tolerance => now%controls%residual_tolerance)
+        if (size(history%unbalance) > 0 .and. now%outcome%residual <= tolerance) return
+        negligible_force = admissible_share*tolerance*smallest_force(now%field)
+      end associate
     end function negligible_force
 
     !> Jumps caused by tractions beyond those of the linearised equilibrium; most points are
@@ -194,7 +181,7 @@ contains
       real(rk) :: answer(3, size(traction, 2)) !< [m]
       answer = linear - traction
       where (abs(answer) <= roundoff*(abs(linear) + abs(traction))) answer = 0.0_rk
-      answer = jumps_of(self, operator%area, answer)
+      answer = jumps_of(self, now%operator%area, answer)
     end function excess_jump
   end subroutine run_newton
 

@@ -9,8 +9,9 @@ module newton_full
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, linear_tractions
-  use joint_iteration, only: iteration_history, start_iteration, take_step, closed_tangent, &
-                             measure_residual, measure_correction, goes_on, close_iteration
+  use joint_iteration, only: joint_increment, iteration_history, start_iteration, take_step, &
+                             closed_tangent, measure_residual, measure_correction, goes_on, &
+                             close_iteration
   use joint_policy, only: joint_process, iterate_joints, jumps_of, share_of
   use block_compliance, only: take_blocks
   use contact_scaling, only: find_contact_scale
@@ -21,7 +22,6 @@ module newton_full
   use solver_low_rank, only: add_low_rank
   use solver_catalogue, only: make_solver, unsymmetric_solver
   use equilibrium, only: equilibrium_solver, force_balance, balance_outcome, is_dropped
-  use step_plan, only: step_controls
   implicit none
   private
   public :: full_equilibrium
@@ -112,37 +112,33 @@ contains
   !> Iterates by the policy of all solvers.
   subroutine iterate_on_all(self, joints, old, new, outcome)
     class(full_equilibrium), intent(inout), target :: self
-    type(dam_joint), intent(in) :: joints(:)
-    type(joint_state), intent(in) :: old(:)
-    type(joint_state), intent(inout) :: new(:)
+    type(dam_joint), intent(in), target :: joints(:)
+    type(joint_state), intent(in), target :: old(:)
+    type(joint_state), intent(inout), target :: new(:)
     type(balance_outcome), intent(inout) :: outcome
-    type(joint_field) :: field
+    type(joint_increment) :: now
     associate (own => self%process)
       own%solver => self
-      call start_iteration(own%balance, joints, self%operator, own%k_ref, own%scale, old, field, &
-                           new)
-      call iterate_joints(own, self%controls, joints, self%operator, old, field, new, outcome)
+      call now%view(self%controls, joints, self%operator, own%k_ref, old, new)
+      call start_iteration(own%balance, own%scale, now)
+      call iterate_joints(own, now)
       nullify (own%solver)
     end associate
+    outcome = now%outcome
   end subroutine iterate_on_all
 
   !> Iterates until residual and correction are within the tolerances, or in a cycle.
-  subroutine run_newton(self, controls, joints, operator, old, field, new, outcome)
+  subroutine run_newton(self, now)
     class(full_process), intent(inout) :: self
-    type(step_controls), intent(in) :: controls
-    type(dam_joint), intent(in) :: joints(:)
-    type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: old(:)
-    type(joint_field), intent(inout) :: field
-    type(joint_state), intent(inout) :: new(:)
-    type(balance_outcome), intent(inout) :: outcome
-    real(rk), dimension(3, operator%num_points) :: correction, linear, answer
+    type(joint_increment), intent(inout) :: now
+    real(rk), dimension(3, now%operator%num_points) :: correction, linear, answer
     type(iteration_history) :: history
     real(rk) :: unused(size(self%x))
     allocate (history%unbalance(0))
-    associate (solver => self%solver, balance => self%balance)
-      do while (goes_on(history, outcome, controls%max_iterations))
-        if (is_dropped(controls)) return
+    associate (solver => self%solver, balance => self%balance, operator => now%operator, &
+               field => now%field, outcome => now%outcome)
+      do while (goes_on(history, now))
+        if (is_dropped(now%controls)) return
         outcome%iterations = outcome%iterations + 1
         call solver%factorise_tangent(operator, field%tangent, self%failure)
         if (allocated(self%failure)) then
@@ -158,18 +154,18 @@ contains
         if (.not. allocated(self%closed_jump)) then
           call store_closed(self, operator, field, balance%offset + answer, linear)
         end if
-        call take_step(joints, operator, old, self%k_ref, correction, linear, field, new)
-        call measure_residual(operator, self%k_ref, field, linear, outcome)
-        if (outcome%residual <= controls%residual_tolerance) then
+        call take_step(correction, linear, now)
+        call measure_residual(linear, now)
+        if (outcome%residual <= now%controls%residual_tolerance) then
           call solver%back_substitute(0.0_rk*balance%rhs, linear - field%traction, operator, &
                                       unused, answer, self%failure)
           if (allocated(self%failure)) return
-          call measure_correction(field, self%k_ref, answer, controls%increment_tolerance, outcome)
+          call measure_correction(answer, now)
         end if
-        call close_iteration(joints, operator, old, self%k_ref, field, new, outcome, history)
+        call close_iteration(now, history)
       end do
     end associate
-    field%iterate = linear
+    now%field%iterate = linear
   end subroutine run_newton
 
   !> Stores jumps with closed joints, from the first equilibrium of the structure.
@@ -194,12 +190,12 @@ contains
   end subroutine find_closed
 
   !> Nothing: each iteration solves for all unknowns.
-  subroutine find_response(self, operator, field)
+  subroutine find_response(self, now)
     class(full_process), intent(in) :: self
-    type(jump_operator), intent(in) :: operator
-    type(joint_field), intent(inout) :: field
-    if (size(self%x) > 0 .and. operator%num_points > 0) field%response = field%jump
+    type(joint_increment), intent(inout) :: now
+    if (size(self%x) > 0) now%field%response = now%field%jump
   end subroutine find_response
+
   !> Factors K_eff + weight*B^T area*tangent B.
   subroutine factorise_tangent(self, operator, tangent, error)
     class(full_equilibrium), intent(inout) :: self

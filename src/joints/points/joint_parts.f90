@@ -4,7 +4,7 @@
 !> over the parts that are there; between different meshes the weights of its nodes change, too.
 module joint_parts
   use dam_mesh, only: fe_mesh, are_there
-  use joint_points, only: dam_joint, point_rows
+  use joint_points, only: dam_joint
   use kinds, only: rk
   implicit none
   private

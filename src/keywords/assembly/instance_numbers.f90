@@ -6,7 +6,6 @@ module instance_numbers
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: element_kinds, find_element_kind
   use kinds, only: long
-  use parse_text, only: without_blanks
   use write_text, only: as_text
   implicit none
   private

@@ -3,11 +3,10 @@ module keywords_contact_pair
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use joint_contraction, only: contraction_law
-  use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_real, kind_reference, &
-                          kind_text, kind_word
+  use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_real, kind_text, kind_word
   use keywords_other, only: add_idle_parameters
   use kinds, only: rk
-  use model_draft, only: add_law, draft, interaction_request, joint_request, law_request, origin
+  use model_draft, only: add_law, draft, interaction_request, joint_request, law_request
   use named_things, only: find_surface_at, longest_name, nodes_of_set
   use nearest_words, only: nearest_word
   use parse_text, only: parse_real

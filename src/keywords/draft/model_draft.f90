@@ -111,6 +111,7 @@ module model_draft
     procedure :: check_test => accept_test
   end type material_request
 
+  !> One material of a list, as its cards give it.
   type :: request_slot
     class(material_request), allocatable :: item
   end type request_slot

@@ -73,6 +73,7 @@ contains
                     faults, members)
   end subroutine elements_at
 
+  !> Positions of the node or element, or of the members of the set, named in a field.
   subroutine members_at(this, line, field, kind, position, sets, faults, members)
     type(card), intent(in) :: this
     integer, intent(in) :: line, field
@@ -112,7 +113,7 @@ contains
     character(:), allocatable :: problem
     integer :: i, others
     if (.not. is_ambiguous(line)) return
-    do i = 1, line - 1
+    do i = line - 1, 1, -1 ! the nearest first: all looks back together pass each line once
       if (is_ambiguous(i)) return
     end do
     others = count([(is_ambiguous(i), i=line + 1, this%num_lines)])
@@ -156,6 +157,7 @@ contains
                                          .or. any(sets%sets(found)%members /= member)
   end function is_another_set
 
+  !> Reports a set that is not defined above.
   subroutine fault_unknown_set(this, line, field, kind, sets, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line, field

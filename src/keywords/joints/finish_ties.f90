@@ -40,16 +40,20 @@ contains
     logical, allocatable :: is_fixed(:, :), is_always(:, :)
     type(node_tie), allocatable :: ties(:)
     integer, allocatable :: adjusting(:)
-    integer :: i, k, num_before
+    integer :: i, k, num_before, num_guests, used
     if (size(model%ties) == 0) return
-    allocate (adjusting(0), ties(0))
+    allocate (adjusting(0), ties(size(model%ties)))
+    used = 0
     call collect_supports(model, is_fixed, is_always)
     do i = 1, size(model%ties)
-      num_before = size(ties)
-      call build_tie(model%ties(i), is_fixed, is_always, ties, model, faults)
+      num_before = used
+      num_guests = size(model%problem%guests)
+      call build_tie(model%ties(i), is_fixed, is_always, ties(:used), model, faults)
       if (faults%has_errors()) return
-      call ties_of(model%problem%guests, ties)
-      if (model%ties(i)%adjusts) adjusting = [adjusting, (k, k=num_before + 1, size(ties))]
+      do k = num_guests + 1, size(model%problem%guests) ! springs add none
+        call model%problem%guests(k)%item%add_ties(ties, used)
+      end do
+      if (model%ties(i)%adjusts) adjusting = [adjusting, (k, k=num_before + 1, used)]
     end do
     call adjust_nodes(ties(adjusting), model, faults)
     call check_initial_values(.false., model, faults)

@@ -6,7 +6,6 @@ module finish_uplift
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use joint_rim, only: area_of_facets, face_rim, find_rim
-  use joint_points, only: dam_joint
   use kinds, only: rk
   use load_reservoir, only: reservoir_load
   use load_uplift, only: fill_linear, fill_open, uplift_load

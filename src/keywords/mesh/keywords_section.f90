@@ -1,6 +1,5 @@
 !> *SOLID SECTION.
 module keywords_section
-  use dam_mesh, only: named_set
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid

@@ -7,10 +7,9 @@ module keywords_sets
   use element_catalogue, only: is_solid
   use growing_lists, only: append, make_room
   use id_map, only: position_table
-  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_reference, &
-                          kind_word
+  use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_reference, kind_word
   use mesh_faces, only: count_corners, face_nodes
-  use model_draft, only: draft, origin
+  use model_draft, only: draft
   use named_things, only: elements_at, nodes_at, nodes_in_order_at, with_article
   use surface_of_faces, only: find_set_faces
   use surface_of_nodes, only: find_faces

@@ -5,7 +5,7 @@ module finish_step
   use load_point, only: point_load
   use model_draft, only: draft, add_load
   use node_dofs, only: num_directions
-  use step_plan, only: field_request, output_rhythm, print_request, step, step_fixity, step_load
+  use step_plan, only: output_rhythm, step, step_fixity, step_load
   use write_text, only: as_text
   use applied_load, only: load
   implicit none

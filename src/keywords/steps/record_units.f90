@@ -11,7 +11,7 @@ module record_units
   use write_text, only: as_text
   implicit none
   private
-  public :: record_header, factor_of_unit, settle_unit, find_further_scale, choices_of_units
+  public :: record_header, settle_unit, find_further_scale, choices_of_units
   public :: factor_beside_scale, repeats_unit
 
   character(*), parameter :: choices_of_units = 'G | M/S2 | CM/S2'

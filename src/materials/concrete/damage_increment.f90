@@ -5,7 +5,7 @@ module damage_increment
   use damage_model, only: concrete_model, place_curves, placed_curves
   use damage_return, only: find_flow, flow_by, flow_state, trial_state
   use kinds, only: rk
-  use tensor6, only: principal_axes, principal_values, second_invariant, trace
+  use tensor6, only: principal_axes, second_invariant, trace
   implicit none
   private
   public :: plastic_state, increment_result, integrate_increment, elastic_stress

@@ -9,8 +9,8 @@ module damage_flows
   use kinds, only: rk
   implicit none
   private
-  public :: flow_block, curve_parts, most_points, no_knot
-  public :: find_kinematics, find_parts, find_strengths, find_residuals, keep_flows, keep_values
+  public :: flow_block, most_points, no_knot
+  public :: find_kinematics, find_parts, find_residuals, keep_flows, keep_values
 
   integer, parameter :: most_points = 64 !< of a block: its numbers fit the fastest cache
   !> In place of the end of the last part of a curve, and of a multiplier without limit.

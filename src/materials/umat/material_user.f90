@@ -1,6 +1,6 @@
 !> A material whose law is a UMAT of the user, called point by point.
 module material_user
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_loc
+  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_loc
   use errors, only: deck_is_wrong, error_type, raise
   use kinds, only: rk
   use material_law, only: start_points, stress_law

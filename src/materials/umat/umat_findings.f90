@@ -25,7 +25,7 @@ module umat_findings
   type :: findings
     type(tangent_check) :: check
     character(:), allocatable :: asymmetry !< of the first DDSDDE that was symmetrised
-    logical :: is_asymmetry_told = .false.
+    logical :: is_asymmetry_reported = .false.
     character(:), allocatable :: bad_start !< why SDVINI failed
   contains
     procedure :: add_check

@@ -200,9 +200,9 @@ contains
     class(user_library), intent(inout) :: self
     character(:), allocatable :: text
     text = ''
-    if (.not. allocated(self%found%asymmetry) .or. self%found%is_asymmetry_told) return
+    if (.not. allocated(self%found%asymmetry) .or. self%found%is_asymmetry_reported) return
     text = self%found%asymmetry
-    self%found%is_asymmetry_told = .true.
+    self%found%is_asymmetry_reported = .true.
   end function new_notes
 
   !> Result of the check of the tangents; '' without a check.

@@ -75,6 +75,7 @@ contains
     end do
   end subroutine unite
 
+  !> The root of the tree that a node stands in.
   pure integer function root_of(parent, node) result(root)
     integer, intent(in) :: parent(:), node
     root = node

@@ -30,7 +30,7 @@ module node_dofs
     integer, allocatable :: first(:) !< (nodes + 1) first dof of each node
     integer, allocatable :: node(:) !< (dofs) the node of each dof
   contains
-    procedure :: num_of_node, dof_of, component_of, displacements_of
+    procedure :: dof_of, component_of, displacements_of
   end type dof_map
 
 contains
@@ -43,30 +43,23 @@ contains
   end function displacement_dofs
 
   !> The dofs of nodes with different numbers of components.
-  pure function number_dofs(components, num_of_node) result(dofs)
+  pure function number_dofs(components, num_components) result(dofs)
     type(dof_component), intent(in) :: components(:) !< displacements first
-    integer, intent(in) :: num_of_node(:) !< (nodes) number of components of each node
+    integer, intent(in) :: num_components(:) !< (nodes) number of components of each node
     type(dof_map) :: dofs
     integer :: node
-    allocate (dofs%first(size(num_of_node) + 1))
+    allocate (dofs%first(size(num_components) + 1))
     dofs%components = components
     dofs%first(1) = 1
-    do node = 1, size(num_of_node)
-      dofs%first(node + 1) = dofs%first(node) + num_of_node(node)
+    do node = 1, size(num_components)
+      dofs%first(node + 1) = dofs%first(node) + num_components(node)
     end do
-    dofs%num_dofs = dofs%first(size(num_of_node) + 1) - 1
+    dofs%num_dofs = dofs%first(size(num_components) + 1) - 1
     allocate (dofs%node(dofs%num_dofs))
-    do node = 1, size(num_of_node)
+    do node = 1, size(num_components)
       dofs%node(dofs%first(node):dofs%first(node + 1) - 1) = node
     end do
   end function number_dofs
-
-  !> Number of components of a node.
-  elemental integer function num_of_node(self, node)
-    class(dof_map), intent(in) :: self
-    integer, intent(in) :: node
-    num_of_node = self%first(node + 1) - self%first(node)
-  end function num_of_node
 
   !> The dof of a component of a node, which must have that component.
   elemental integer function dof_of(self, node, component)

@@ -80,6 +80,7 @@ module step_plan
     logical :: may_be_dropped = .false. !< of an increment: a signal ends its iteration
   end type step_controls
 
+  !> One component of *INITIAL CONDITIONS.
   type :: initial_value
     logical :: is_velocity = .false. !< else a displacement
     integer :: node = 0, dof = 0
@@ -120,6 +121,7 @@ module step_plan
     integer :: num_modes = 0 !< 0: as many as the accuracy needs
   end type step_reduction
 
+  !> One step: what happens from *STEP to *END STEP.
   type :: step
     character(:), allocatable :: name
     type(step_procedure) :: procedure

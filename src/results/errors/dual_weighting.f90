@@ -9,7 +9,7 @@ module dual_weighting
   use shape_hex8, only: hex8_dofs
   use fitted_stress, only: fitted_defect, make_patch_fit, patch_fit
   use stress_error, only: energy_of_stresses, hides_error, smoothing_plan, stress_defect
-  use stress_recovery, only: recovery_plan, max_points, few_nodes
+  use stress_recovery, only: recovery_plan, max_points, fewest_for_threads
   use tensor6, only: sum_tensors
   implicit none
   private
@@ -103,7 +103,7 @@ contains
       allocate (own(k)%added, source=own(k)%stress)
     end do
     !$omp parallel do default(none) shared(model, plan, u, own) schedule(dynamic, 4) &
-    !$omp if (model%mesh%num_nodes > few_nodes)
+    !$omp if (model%mesh%num_nodes > fewest_for_threads)
     do i = 1, size(plan%blocks)
       if (plan%formulations(plan%blocks(i)%formulation)%item%has_plain_strain) then
         call recover_plain_block(model, plan, i, u, own)
@@ -115,16 +115,15 @@ contains
     call smooth_stresses(model, plan, smoothing, wants_fit, is_all_fitted, own)
   end subroutine find_fields
 
-  !> The solids whose stresses hardly jump at their corners, for all their error: incompatible modes
-  !> follow bending, one point shows nothing of it.
+  !> The solids that need fitted stresses: means at corners would hide their error.
   subroutine find_fitted(plan, is_fitted)
     type(recovery_plan), intent(in) :: plan
     logical, intent(out) :: is_fitted(:) !< (solids)
     integer :: i
     is_fitted = .false.
     do i = 1, size(plan%blocks)
-      associate (kind => plan%formulations(plan%blocks(i)%formulation)%item)
-        is_fitted(plan%blocks(i)%solids) = kind%name == 'C3D8I' .or. kind%name == 'C3D8R'
+      associate (element => plan%formulations(plan%blocks(i)%formulation)%item)
+        is_fitted(plan%blocks(i)%solids) = element%has_small_jumps
       end associate
     end do
   end subroutine find_fitted
@@ -223,7 +222,8 @@ contains
     type(point_fields), intent(in) :: first, second
     real(rk) :: work(plan%num_solids)
     integer :: s, m
-    !$omp parallel do default(none) private(m) schedule(static) if (plan%num_solids > few_nodes) &
+    !$omp parallel do default(none) private(m) schedule(static) &
+    !$omp if (plan%num_solids > fewest_for_threads) &
     !$omp shared(model, plan, smoothing, is_fitted, first, second, work)
     do s = 1, plan%num_solids
       work(s) = 0.0_rk

@@ -173,14 +173,11 @@ contains
     integer, intent(in) :: patches(:)
     logical, intent(in) :: is_wanted(:) !< (solids)
     integer, intent(in) :: node, number
-    real(rk) :: own
-    integer :: i
+    real(rk) :: own, by_means, by_points
     own = value_of(stresses%node_stress(:, node), number)
-    error = 0.0_rk
-    do i = 1, 2
-      error = max(error, abs(value_of(fit_at(mesh, stresses, patches, is_wanted, i == 1, node), &
-                                      number) - own))
-    end do
+    by_means = value_of(fit_at(mesh, stresses, patches, is_wanted, .true., node), number)
+    by_points = value_of(fit_at(mesh, stresses, patches, is_wanted, .false., node), number)
+    error = max(abs(by_means - own), abs(by_points - own))
   end function linear_error
 
   !> The stress at a node: the mean of the linear fits of the patches with most solids.

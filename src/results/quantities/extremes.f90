@@ -8,6 +8,7 @@ module extremes
   !> The order of `extremes_by_face%at`.
   character(10), parameter :: face_names(3) = ['anywhere  ', 'upstream  ', 'downstream']
 
+  !> The extreme of one quantity in one region.
   type :: extreme
     logical :: is_found = .false.
     real(rk) :: value = 0.0_rk
@@ -15,6 +16,7 @@ module extremes
     real(rk) :: x(3) = 0.0_rk !< [m]
   end type extreme
 
+  !> The extremes of one quantity.
   type :: extremes_by_face
     type(extreme) :: at(3) !< anywhere, upstream, downstream
   end type extremes_by_face

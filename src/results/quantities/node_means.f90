@@ -7,7 +7,7 @@
 module node_means
   use kinds, only: rk
   use shape_hex8, only: corners_from_points, corner_of_point
-  use stress_recovery, only: recovery_plan, max_points, few_nodes
+  use stress_recovery, only: recovery_plan, max_points, fewest_for_threads
   implicit none
   private
   public :: average_at_nodes, average_at
@@ -39,7 +39,7 @@ contains
     to_corner = transpose(corners_from_points())
     !$omp parallel do default(none) schedule(static) &
     !$omp shared(plan, at_points, is_bounded, nodes, at_nodes, to_corner) &
-    !$omp if (size(nodes) > few_nodes)
+    !$omp if (size(nodes) > fewest_for_threads)
     do i = 1, size(nodes)
       call average_one(plan, at_points, is_bounded, to_corner, nodes(i), at_nodes(:, nodes(i)))
     end do

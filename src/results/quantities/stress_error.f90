@@ -13,7 +13,7 @@ module stress_error
   use shape_hex8, only: corners_from_points, corner_of_point, hex8_dofs, point_shape
   use small_matrix, only: solve_dense
   use analysis_state, only: state
-  use stress_recovery, only: recovery_plan, motion_of_element, max_points, few_nodes
+  use stress_recovery, only: recovery_plan, motion_of_element, max_points, fewest_for_threads
   use tensor6, only: sum_tensors
   use thermal_expansion, only: expands_alike
   implicit none
@@ -49,7 +49,7 @@ contains
                                                              smoothing%compliance), smoothing)
     allocate (smoothing%volume(max_points, plan%num_solids))
     !$omp parallel do default(none) shared(model, plan, smoothing) private(slope, x, status) &
-    !$omp schedule(static) if (plan%num_solids > few_nodes)
+    !$omp schedule(static) if (plan%num_solids > fewest_for_threads)
     do s = 1, plan%num_solids
       x = model%mesh%x(:, model%mesh%nodes(:, plan%element_of_solid(s)))
       call slopes_at_points(x, slope, smoothing%volume(:, s), status)
@@ -193,7 +193,7 @@ contains
     real(rk) :: at_corner(6, 8)
     integer :: s
     !$omp parallel do default(none) shared(plan, smoothing, stress, smooth, defect) &
-    !$omp private(at_corner) schedule(static) if (plan%num_solids > few_nodes)
+    !$omp private(at_corner) schedule(static) if (plan%num_solids > fewest_for_threads)
     do s = 1, plan%num_solids
       at_corner = smooth(:, smoothing%patch(:, s))
       call sum_tensors(8, at_corner, point_shape, 8, defect(:, :, s))
@@ -243,7 +243,8 @@ contains
     real(rk) :: compliance(6, 6), strain(6)
     integer :: s, q, m, j
     !$omp parallel do default(none) shared(model, plan, smoothing, first, second, energy) &
-    !$omp private(compliance, strain, q, m, j) schedule(static) if (plan%num_solids > few_nodes)
+    !$omp private(compliance, strain, q, m, j) schedule(static) &
+    !$omp if (plan%num_solids > fewest_for_threads)
     do s = 1, plan%num_solids
       m = model%mesh%material_of_element(plan%element_of_solid(s))
       energy(s) = 0.0_rk

@@ -5,7 +5,7 @@ module stress_fields
   use analysis_state, only: state
   use tensor6, only: principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, recover_some, &
-                             copy_solid, max_points, few_nodes, recover_expansions
+                             copy_solid, max_points, fewest_for_threads, recover_expansions
   use node_means, only: average_at_nodes, average_at
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
@@ -296,7 +296,7 @@ contains
       allocate (self%point_principal(3, max_points, self%plan%num_solids))
     end if
     !$omp parallel do default(none) shared(self) private(q) schedule(static) &
-    !$omp if (max_points*self%plan%num_solids > few_nodes)
+    !$omp if (max_points*self%plan%num_solids > fewest_for_threads)
     do s = 1, self%plan%num_solids
       do q = 1, max_points
         self%point_principal(:, q, s) = principal_values(self%point_stress(:, q, s))
@@ -345,7 +345,7 @@ contains
     real(rk) :: values(3, size(tensor, 2))
     integer :: i
     !$omp parallel do default(none) shared(tensor, values) schedule(static) &
-    !$omp if (size(tensor, 2) > few_nodes)
+    !$omp if (size(tensor, 2) > fewest_for_threads)
     do i = 1, size(tensor, 2)
       values(:, i) = principal_values(tensor(:, i))
     end do

@@ -5,7 +5,7 @@ module stress_operator
   use node_dofs, only: num_directions
   use shape_hex8, only: corners_from_points, hex8_dofs
   use problem_definition, only: problem
-  use stress_recovery, only: recovery_plan, operators_of_block, max_points, few_nodes
+  use stress_recovery, only: recovery_plan, operators_of_block, max_points, fewest_for_threads
   implicit none
   private
   public :: nodal_operator, make_nodal_operator, apply_operator
@@ -163,7 +163,7 @@ contains
     real(rk), intent(out) :: stress(:, :) !< (6, nodes) [Pa]
     integer :: node
     !$omp parallel do default(none) schedule(static) shared(operator, u, stress) &
-    !$omp if (size(stress, 2) > few_nodes)
+    !$omp if (size(stress, 2) > fewest_for_threads)
     do node = 1, size(stress, 2)
       stress(:, node) = 0.0_rk
       if (operator%material(node) == 0) cycle

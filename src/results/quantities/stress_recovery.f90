@@ -18,12 +18,15 @@ module stress_recovery
   private
   public :: recovery_plan, make_recovery_plan, recover_points, recover_some, copy_solid, max_points
   public :: recover_expansions
-  public :: operators_of_block, motion_of_element, few_nodes
+  public :: operators_of_block, motion_of_element, fewest_for_threads
 
   integer, parameter :: max_points = 8 !< most integration points of an element
-  integer, parameter :: few_nodes = 2000 !< smaller models are faster on one thread
+  !> Nodes or solids from which loops of results take several threads. Threads that wait are woken
+  !> up for each loop, which takes up to 30 ms on a busy machine; one thread needs less for fewer.
+  integer, parameter :: fewest_for_threads = 2000
   integer, parameter :: block_size = 32 !< elements; their operators fit into the cache of a core
 
+  !> One kind of element of a list.
   type :: formulation_slot
     class(solid_element), allocatable :: item
   end type formulation_slot
@@ -174,11 +177,11 @@ contains
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
-    real(rk), intent(out) :: strain(:, :, :) !< (6, max_points, solids)
-    real(rk), intent(out) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(inout) :: strain(:, :, :) !< (6, max_points, solids)
+    real(rk), intent(inout) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     integer :: i
     !$omp parallel do default(none) shared(model, plan, now, strain, stress) &
-    !$omp schedule(dynamic, 4) if (model%mesh%num_nodes > few_nodes)
+    !$omp schedule(dynamic, 4) if (model%mesh%num_nodes > fewest_for_threads)
     do i = 1, size(plan%blocks)
       call recover_part(model, plan, plan%blocks(i), now, strain, stress)
     end do
@@ -261,7 +264,7 @@ contains
     integer :: i
     strain = 0.0_rk
     !$omp parallel do default(none) shared(model, plan, now, strain) schedule(dynamic, 4) &
-    !$omp if (model%mesh%num_nodes > few_nodes)
+    !$omp if (model%mesh%num_nodes > fewest_for_threads)
     do i = 1, size(plan%blocks)
       call add_expansions(model, plan, plan%blocks(i), now, strain)
     end do

@@ -25,6 +25,7 @@ module run_records
   private
   public :: run_record, text_item
 
+  !> One text of a list.
   type :: text_item
     character(:), allocatable :: text
   end type text_item

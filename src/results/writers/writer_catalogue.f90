@@ -11,6 +11,7 @@ module writer_catalogue
   private
   public :: writer_item, list_writers
 
+  !> One writer of the list.
   type :: writer_item
     class(writer), allocatable :: item
     character(:), allocatable :: label !< name in the ledger

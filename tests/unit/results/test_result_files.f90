@@ -11,7 +11,7 @@ program test_result_files
   use print_kinds, only: prints_of_elements, prints_of_joints, prints_of_nodes
   use material_elastic, only: elastic_law
   use joint_contraction, only: contraction_law
-  use joint_points, only: draw_elements, dam_joint, list_faces
+  use joint_points, only: draw_elements, list_faces
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use file_system, only: make_folder

@@ -4,7 +4,7 @@ program test_tensor6
   use small_matrix, only: cross_product, determinant3
   use tensor6, only: as_matrix, principal_axes, principal_values, second_invariant, &
                      sum_tensors, third_invariant, trace, von_mises
-  use testing, only: check, check_close, repeat_chance, test_log
+  use testing, only: check_close, repeat_chance, test_log
   implicit none
   real(rk), parameter :: roundoff = 20.0_rk*epsilon(1.0_rk) !< a few operations on the largest value
   type(test_log) :: log

@@ -3,7 +3,7 @@ program test_facet_clip
   use facet_clip, only: clip_polygon, most_corners
   use facet_plane, only: plane_area
   use kinds, only: rk
-  use testing, only: check, check_close, test_log
+  use testing, only: check_close, test_log
   implicit none
   type(test_log) :: log
   real(rk), parameter :: square(2, 4) = reshape(real([0, 0, 1, 0, 1, 1, 0, 1], rk), [2, 4])

@@ -5,7 +5,7 @@ program test_joint_contraction
   use joint_law, only: joint_state, solid_behind, state_bonded, state_open, state_slip, &
                        state_stick, traction_law
   use kinds, only: rk
-  use testing, only: check, check_close, check_text, test_log
+  use testing, only: check, check_close, test_log
   implicit none
 
   real(rk), parameter :: kn = 1.0e12_rk, kt = 4.0e11_rk

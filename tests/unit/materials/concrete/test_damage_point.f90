@@ -2,11 +2,11 @@
 program test_damage_point
   use concrete_model, only: lee_fenves, table_one
   use damage_constants, only: concrete_constants
-  use damage_model, only: concrete_model, make_concrete_model, placed_curves, stiffness_of
+  use damage_model, only: concrete_model, make_concrete_model, placed_curves
   use damage_point, only: update_point
   use damage_states, only: point_answer, point_history, point_motion
   use kinds, only: rk
-  use testing, only: check, check_close, repeat_chance, test_log
+  use testing, only: check_close, repeat_chance, test_log
   implicit none
   !> Of the tangent over E. Central differences with a step of 1e-8: rounding 1e-16 E strain/step =
   !> 1e-11, the end of the return map 1e-13 of the strength over E step = 1e-8, curvature (step over

@@ -41,7 +41,7 @@ program test_material_damage_plasticity
   call cycles('ENERGY')
   call energy('LEE-FENVES')
   call energy('ENERGY')
-  call what_it_tells()
+  call what_it_reports()
   call held_switch()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -332,7 +332,7 @@ contains
   end subroutine energy
 
   !> Flags, fields, and an error for tables at fault.
-  subroutine what_it_tells()
+  subroutine what_it_reports()
     type(concrete_constants) :: concrete
     type(specimen) :: body
     type(error_type), allocatable :: error
@@ -354,7 +354,7 @@ contains
     concrete%tension(1, 1) = -1.0_rk
     call make_concrete_law(concrete, body%law, error)
     call check(log, allocated(error), 'tables at fault')
-  end subroutine what_it_tells
+  end subroutine what_it_reports
 
   !> Cracked, then pressed in one go: with w_c = 1 the switch of Eq. 17 gives back E_0 at once;
   !> held, it leaves (1 - d_t) of the same effective stress for this increment. An undamaged point

@@ -8,7 +8,6 @@ program test_material_user
                              secant_tangent, stored_energy, time_increment, update_report
   use material_user, only: find_stiffness, make_user_law, user_constants, user_law
   use testing, only: check, check_close, check_text, test_log
-  use umat_build, only: umat_file
   use umat_loader, only: open_library, umat_request, user_library
   implicit none
   type(test_log) :: log

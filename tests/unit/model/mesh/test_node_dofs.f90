@@ -30,7 +30,7 @@ contains
     integer :: k
     dofs = number_dofs([displacements, dof_component('pressure', 'Pa')], [3, 4, 3, 4])
     call check(log, dofs%num_dofs == 14, 'two nodes have a dof more')
-    call check(log, all(dofs%num_of_node([1, 2, 3, 4]) == [3, 4, 3, 4]), 'components of nodes')
+    call check(log, all(dofs%first == [1, 4, 8, 11, 15]), 'components of nodes')
     call check(log, all(dofs%displacements_of([3]) == [8, 9, 10]), 'displacements of node 3')
     call check(log, all(dofs%dof_of([2, 4], 4) == [7, 14]), 'pressures')
     call check(log, all(dofs%dof_of(dofs%node, dofs%component_of([(k, k=1, 14)])) == &

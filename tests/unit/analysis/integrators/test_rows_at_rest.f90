@@ -1,13 +1,11 @@
-!> Static steps, increments, supports and modes of rows of boxes against closed forms.
-program test_time_static
+!> Static steps and modes of rows of boxes against closed forms; models without equilibrium.
+program test_rows_at_rest
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: state
-  use step_plan, only: step
   use initial_state, only: start_analysis
   use step_loop, only: run_all_steps
-  use step_control, only: increment_control, start_control
   use joint_contraction, only: contraction_law
   use row_model, only: make_row, put_on_ground, add_gravity, new_step, fix, recorder, calls_of
   use testing, only: test_log, check, check_close
@@ -15,12 +13,11 @@ program test_time_static
 
   type(test_log) :: log
 
-  log%suite = 'time_static'
+  log%suite = 'rows_at_rest'
   call bar_is_pulled(log)
   call block_rests_on_joint(log)
-  call floating_block_is_told(log)
-  call loose_model_is_told(log)
-  call increments_grow_and_shrink(log)
+  call floating_block_is_reported(log)
+  call loose_model_is_reported(log)
   call bar_vibrates(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -75,7 +72,7 @@ contains
   end subroutine block_rests_on_joint
 
   !> The same block pulled upwards has no equilibrium, and the message says where.
-  subroutine floating_block_is_told(log)
+  subroutine floating_block_is_reported(log)
     type(test_log), intent(inout) :: log
     type(problem) :: model
     type(recorder) :: results
@@ -88,7 +85,7 @@ contains
     if (.not. allocated(error)) return
     call check(log, index(error%message, 'joint GROUND') > 0, 'the message names the joint')
     call check(log, now%step_time <= 0.0_rk .and. now%increment == 0, 'the last state is kept')
-  end subroutine floating_block_is_told
+  end subroutine floating_block_is_reported
 
   subroutine make_block(g, model)
     real(rk), intent(in) :: g !< downwards [m/s2]
@@ -101,7 +98,7 @@ contains
   end subroutine make_block
 
   !> A model without supports is named by node and direction.
-  subroutine loose_model_is_told(log)
+  subroutine loose_model_is_reported(log)
     type(test_log), intent(inout) :: log
     type(problem) :: model
     type(recorder) :: results
@@ -116,116 +113,7 @@ contains
     call check(log, allocated(error), 'a loose model is an error')
     if (.not. allocated(error)) return
     call check(log, index(error%message, 'node ') > 0, 'the message names a node')
-  end subroutine loose_model_is_told
-
-  !> Halves after failure, gives up at the smallest size; the end is met without a sliver.
-  subroutine increments_grow_and_shrink(log)
-    type(test_log), intent(inout) :: log
-    type(step) :: plan
-    type(increment_control) :: control
-    logical :: gives_up
-    integer :: i
-    plan%first_increment = 0.1_rk
-    plan%duration = 1.0_rk
-    call start_control(plan, .false., control)
-    call control%accept(3)
-    call control%accept(3)
-    call check_close(log, control%size, 0.15_rk, 1.0e-15_rk, 'grown after two easy increments')
-    call control%cut(0.15_rk, 1.0_rk, gives_up)
-    call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'halved')
-    call check(log,.not. gives_up, 'goes on')
-    call slow_increments_grow(log, plan)
-    plan%first_increment = 0.01_rk
-    call start_control(plan, .true., control)
-    do i = 1, 40
-      call control%accept(3)
-    end do
-    call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'dynamic increments do not grow')
-    call check_close(log, control%next_size(0.99_rk + 1.0e-14_rk), 0.01_rk, 0.0_rk, 'no sliver')
-    call control%cut(0.01_rk, 1.0_rk, gives_up)
-    call check_close(log, control%size, 0.005_rk, 1.0e-15_rk, 'dynamic increments are halved')
-    do i = 1, 10
-      call control%accept(3)
-    end do
-    call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'and doubled again')
-    call follow_an_error(log, plan)
-    plan%is_direct = .true.
-    call start_control(plan, .true., control)
-    call control%cut(0.01_rk, 1.0_rk, gives_up)
-    call check(log, gives_up, 'direct increments are not cut')
-  end subroutine increments_grow_and_shrink
-
-  !> A size that was cut grows after four increments that converged slowly; after eight when the
-  !> first one of the larger size was cut. A size that was never cut stays.
-  subroutine slow_increments_grow(log, plan)
-    type(test_log), intent(inout) :: log
-    type(step), intent(in) :: plan
-    type(increment_control) :: control
-    logical :: gives_up
-    integer :: i
-    call start_control(plan, .false., control)
-    do i = 1, 40
-      call control%accept(30)
-    end do
-    call check_close(log, control%size, 0.1_rk, 1.0e-15_rk, 'no growth without a cut')
-    call control%cut(0.1_rk, 1.0_rk, gives_up)
-    call stay(log, control, 4, 0.05_rk, 'cut')
-    call check_close(log, control%size, 0.075_rk, 1.0e-15_rk, 'grown')
-    call control%cut(0.075_rk, 1.0_rk, gives_up)
-    call stay(log, control, 8, 0.0375_rk, 'cut at once')
-    call check_close(log, control%size, 0.05625_rk, 1.0e-15_rk, 'grown later')
-    call control%accept(30)
-    call control%cut(0.05625_rk, 1.0_rk, gives_up)
-    do i = 1, 4
-      call control%accept(30)
-    end do
-    call check(log, control%size > 0.03_rk, 'the larger size served once: four increments again')
-  end subroutine slow_increments_grow
-
-  !> Increments of one size that converge slowly.
-  subroutine stay(log, control, num_increments, size_of_all, what)
-    type(test_log), intent(inout) :: log
-    type(increment_control), intent(inout) :: control
-    integer, intent(in) :: num_increments
-    real(rk), intent(in) :: size_of_all
-    character(*), intent(in) :: what
-    integer :: i
-    do i = 1, num_increments
-      call check_close(log, control%size, size_of_all, 1.0e-15_rk, what)
-      call control%accept(30)
-    end do
-  end subroutine stay
-
-  !> Sizes that follow an error: powers of two within the limits, doubled at their multiples.
-  subroutine follow_an_error(log, given)
-    type(test_log), intent(inout) :: log
-    type(step), intent(in) :: given
-    type(step) :: plan
-    type(increment_control) :: control
-    logical :: gives_up
-    integer :: i
-    plan = given
-    plan%controls%accuracy = 0.02_rk
-    plan%procedure%has_inertia = .true.
-    plan%finest_increment = 0.0011_rk
-    plan%largest_increment = 0.04_rk
-    call start_control(plan, .true., control)
-    call control%follow_error(0.01_rk, -2)
-    call check_close(log, control%size, 0.0025_rk, 1.0e-15_rk, 'quartered')
-    call control%follow_error(0.01_rk, -2)
-    call check_close(log, control%size, 0.00125_rk, 1.0e-15_rk, 'the finest is above the limit')
-    do i = 1, 10
-      call control%accept(3)
-    end do
-    call control%follow_error(0.01125_rk, 1)
-    call check_close(log, control%size, 0.00125_rk, 1.0e-15_rk, 'no multiple of the new size')
-    call control%follow_error(0.0125_rk, 1)
-    call check_close(log, control%size, 0.0025_rk, 1.0e-15_rk, 'doubled')
-    call control%follow_error(0.015_rk, 1)
-    call check_close(log, control%size, 0.0025_rk, 1.0e-15_rk, 'not again at once')
-    call control%cut(0.01_rk, 0.2_rk, gives_up)
-    call check_close(log, control%size, 0.00125_rk, 1.0e-15_rk, 'cut to a power of two')
-  end subroutine follow_an_error
+  end subroutine loose_model_is_reported
 
   !> Lowest frequency of one box with one free direction: w^2 = 3 E/(rho L^2).
   subroutine bar_vibrates(log)
@@ -247,4 +135,4 @@ contains
     call check_close(log, results%modes(1)%hz, sqrt(9.0e9_rk/2400.0_rk)/(2.0_rk*acos(-1.0_rk)), &
                      1.0e-6_rk, 'frequency')
   end subroutine bar_vibrates
-end program test_time_static
+end program test_rows_at_rest

@@ -1,5 +1,5 @@
-!> Time stepping on rows of boxes against closed forms.
-program test_time_hht
+!> Rows of boxes in motion (HHT), free, on joints and at a wall, against closed forms.
+program test_rows_in_motion
   use kinds, only: rk
   use errors, only: error_type
   use problem_definition, only: problem
@@ -16,7 +16,7 @@ program test_time_hht
   real(rk), parameter :: pi = acos(-1.0_rk)
   type(test_log) :: log
 
-  log%suite = 'time_hht'
+  log%suite = 'rows_in_motion'
   call linear_energy_closes(log)
   call order_is_two(log)
   call friction_decays(log)
@@ -275,4 +275,4 @@ contains
     k = findloc(results%u >= 0.0_rk, .true., 1)
     call check_close(log, results%time(k), 0.15201_rk, 1.0e-3_rk, 'quarter period of rocking')
   end subroutine block_rocks
-end program test_time_hht
+end program test_rows_in_motion
