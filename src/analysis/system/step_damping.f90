@@ -29,7 +29,7 @@ module step_damping
     type(pattern), private :: thin !< the entries of R that are not zero, for products
     real(rk), allocatable, private :: entries(:) !< their values
   contains
-    procedure :: add_rest_force, add_rest_forces, add_values
+    procedure :: is_zero, add_rest_force, add_rest_forces, add_values
   end type damping_sum
 
 contains
@@ -58,16 +58,18 @@ contains
       own%has_rest = materials_differ .or. any_has_matrix(guests, damping_matrix) &
                      .or. (own%of_mass > 0.0_rk .and. any_has_matrix(guests, mass_matrix)) &
                      .or. (own%of_stiffness > 0.0_rk .and. any_has_matrix(guests, stiffness_matrix))
-      if (.not. own%has_rest) return
+      if (own%is_zero()) return
       call costs%start('assemble', 'damping', 'solver')
       if (materials_differ) then
         call assemble_damping(model, numbers, -first%alpha, -first%beta, matrix, own%rest, error)
         if (allocated(error)) return
-      else
+      else if (own%has_rest) then
         allocate (own%rest(size(matrix%row)), source=0.0_rk)
       end if
-      call add_guests(model, guests, numbers, matrix, own, costs)
-      call drop_zeros(matrix, own%rest, own%thin, own%entries)
+      if (own%has_rest) then
+        call add_guests(model, guests, numbers, matrix, own, costs)
+        call drop_zeros(matrix, own%rest, own%thin, own%entries)
+      end if
       call costs%stop('assemble damping')
     end associate
   end subroutine build_damping_sum
@@ -116,6 +118,12 @@ contains
     has_other_damping = any(abs(model%materials%alpha - alpha) > 0.0_rk &
                             .or. abs(model%materials%beta - beta) > 0.0_rk)
   end function has_other_damping
+
+  !> Whether nothing damps.
+  pure logical function is_zero(self)
+    class(damping_sum), intent(in) :: self
+    is_zero = .not. (self%has_rest .or. self%of_mass > 0.0_rk .or. self%of_stiffness > 0.0_rk)
+  end function is_zero
 
   !> Adds R v.
   subroutine add_rest_force(self, v, force)
