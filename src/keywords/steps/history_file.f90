@@ -8,6 +8,7 @@ module history_file
   use parse_text, only: largest_number, parse_integer, parse_real, upper_case
   use process_limits, only: why_no_file
   use record_units, only: record_header
+  use utf8_text, only: make_utf8
   implicit none
   private
   public :: number_file, read_numbers, read_at2_header
@@ -62,7 +63,7 @@ contains
     numbers%line = numbers%line(:used)
   end subroutine read_numbers
 
-  !> One line of any length.
+  !> One line of any length, in UTF-8.
   subroutine read_line(unit, line, status)
     integer, intent(in) :: unit
     character(:), allocatable, intent(out) :: line
@@ -75,6 +76,7 @@ contains
       line = line//piece(:length)
       if (status /= 0) exit
     end do
+    call make_utf8(line, 1)
     if (is_iostat_eor(status)) status = 0
     if (status /= 0) status = iostat_end
   end subroutine read_line
