@@ -317,13 +317,14 @@ def title_of(text: str) -> str:
 
 def echo_of(results: SiResults) -> str:
     """The deck as the program has read it, all defaults filled in: the start of job.log."""
+    ends = ("warnings of the deck", "ignored input", "step ", "finished", "stopped")
     try:
         lines = results.path(".log").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return ""
     kept = []
     for line in lines:
-        if line.startswith(("step ", "finished", "stopped")):
+        if line.startswith(ends):
             break
         kept.append(line)
     return "\n".join(kept[:2000])
