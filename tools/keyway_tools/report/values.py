@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..colour_scale import FIELDS
+from ..deck_bytes import text_of
 from ..result_files import leaves
 from ..results import why_incomplete
 from ..si_results import SiResults
@@ -284,9 +285,9 @@ def deck_of(results: SiResults) -> DeckHeader:
         return DeckHeader(title_of(echo_of(results)), "", caution)
     same = digest_of(content) == deck.get("sha256")
     caution = "" if same else "The deck has changed since the run: this is its text of today."
-    text = content.decode("utf-8", "replace")
+    text = text_of(content)
     remarks = []
-    for line in text.splitlines():
+    for line in text.split("\n"):
         if line.startswith("**"):
             remarks.append(line[2:].removeprefix(" ").rstrip())
         elif line.startswith("*") and not line.upper().startswith("*HEADING"):
