@@ -5,7 +5,7 @@ module deck_file
   use utf8_text, only: latin1_of_utf8, make_utf8
   implicit none
   private
-  public :: load_file, load_text, path_beside, path_of_named, first_letter
+  public :: load_file, load_text, path_beside, path_of_named, first_letter, why_no_text
 
   integer, parameter :: num_looked_at = 4096 !< letters that show the encoding
   character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8

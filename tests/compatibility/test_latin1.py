@@ -148,7 +148,20 @@ def test_names_have_80_letters_whatever_their_bytes(keyway, letter):
     assert f"did you mean '{name.upper()}'" in done.stderr
 
 
-def test_text_in_utf16_is_refused(keyway):
-    path = keyway.folder / "job.inp"
-    path.write_bytes(deck().encode("utf-16"))
-    assert "save it as UTF-8" in keyway(path, "--check", code=2).stderr
+@pytest.mark.parametrize("name", ["job.inp", *FILES])
+def test_text_in_utf16_is_refused(keyway, name):
+    """One message that says what to do, at the place where the file is named."""
+    for file, text in {**FILES, "job.inp": deck()}.items():
+        encoding = "utf-16" if file == name else "utf-8"
+        (keyway.folder / file).write_bytes(text.encode(encoding))
+    stderr = keyway(keyway.folder / "job.inp", "--check", code=2).stderr
+    assert "job.inp:" in stderr and f"{name}': it is in UTF-16" in stderr
+    assert stderr.count("[") == 1
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])
+def test_mark_of_utf8_above_latin1(keyway, encoding):
+    """An editor has put the mark there; the lines below are what they are."""
+    for file, text in {**FILES, "job.inp": deck()}.items():
+        (keyway.folder / file).write_bytes(b"\xef\xbb\xbf" + text.encode(encoding))
+    assert list(keyway(keyway.folder / "job.inp").json["joints"]) == ["FUGEÄ"]

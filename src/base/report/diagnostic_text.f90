@@ -157,12 +157,12 @@ contains
     text = fault%spot%file//': '
     if (fault%spot%line > 0) text = fault%spot%file//':'//as_text(fault%spot%line)//': '
     if (allocated(fault%spot%keyword)) then
-      if (len(fault%spot%keyword) > 0) text = text//'*'//fault%spot%keyword//': '
+      if (len(fault%spot%keyword) > 0) text = text//'*'//printable(fault%spot%keyword)//': '
     end if
     if (fault%severity /= severity_error) text = text//'warning: '
     text = text//printable(fault%problem)
     if (len(fault%expected) > 0) text = text//'; expected '//fault%expected
-    if (len(fault%nearest) > 0) text = text//"; did you mean '"//fault%nearest//"'?"
+    if (len(fault%nearest) > 0) text = text//"; did you mean '"//printable(fault%nearest)//"'?"
   end function headline
 
   !> The line of the deck and carets below the word; '' where no line is known.

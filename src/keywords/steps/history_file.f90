@@ -1,7 +1,7 @@
 !> Files of numbers that *AMPLITUDE names: plain numbers, or the records of PEER (AT2).
 module history_file
   use, intrinsic :: iso_fortran_env, only: iostat_end
-  use deck_file, only: first_letter
+  use deck_file, only: first_letter, why_no_text
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use kinds, only: rk
@@ -54,10 +54,13 @@ contains
         if (status /= 0 .and. len(line) == 0) exit
         number = number + 1
         if (number == 1) line = line(first_letter(line):)
+        if (number == 1 .and. index(line, achar(0)) > 0) reason = why_no_text(line)
+        if (reason /= '') exit
         if (number > num_headers) call add_line(line, number, spot, faults, numbers, used)
         if (status /= 0) exit
       end do
       close (unit)
+      if (reason /= '') call faults%add(severity_error, spot, "cannot read '"//path//"': "//reason)
     end if
     numbers%values = numbers%values(:used)
     numbers%line = numbers%line(:used)
@@ -76,7 +79,7 @@ contains
       line = line//piece(:length)
       if (status /= 0) exit
     end do
-    call make_utf8(line, 1)
+    call make_utf8(line, first_letter(line))
     if (is_iostat_eor(status)) status = 0
     if (status /= 0) status = iostat_end
   end subroutine read_line

@@ -172,7 +172,8 @@ contains
 
   !> No control character is shown, and no part of a letter where a long line is cut.
   subroutine odd_letters()
-    type(diagnostic_list) :: list, start, ending
+    type(diagnostic_list) :: list, start, ending, named
+    type(place) :: spot
     character(*), parameter :: csi = char(194)//char(155) !< terminals obey U+009B
     call list%add(severity_error, spot_of(1, 4, 1, 'a'//csi//'bc'), 'is odd')
     call check_text(log, text_of_errors(list), 'dam.inp:1: *ELASTIC: is odd'//lf// &
@@ -181,6 +182,10 @@ contains
     call check(log, index(text_of_errors(start), '| a'//repeat(umlaut, 50)//lf) > 0, &
                'whole letters at the end of what is shown')
     call ending%add(severity_error, spot_of(1, 301, 1, repeat(umlaut, 150)//'z'), 'is long')
+    spot = spot_of(1, 0, 0, 'x')
+    spot%keyword = 'A'//csi//'B'
+    call named%add(severity_error, spot, 'is odd')
+    call check(log, index(text_of_errors(named), '*A?B: is odd') > 0, 'a keyword')
     call check(log, index(text_of_errors(ending), '| '//repeat(umlaut, 50)//'z'//lf) > 0, &
                'whole letters at the start of what is shown')
   end subroutine odd_letters
