@@ -15,7 +15,7 @@ module card_check
   public :: check_card, check_given_parameters, check_lines, longest_name
 
   integer, parameter :: most_letters = 80 !< of a name, as in Abaqus
-  integer, parameter :: longest_name = 4*most_letters !< bytes of a name in UTF-8
+  integer, parameter :: longest_name = 2*most_letters !< bytes: names of files have at most 255
   integer, parameter :: shortest_name = 3 !< letters of an abbreviated parameter
 
 contains
@@ -304,6 +304,9 @@ contains
     if (num_letters(word) > most_letters) then
       problem = 'a name of '//as_text(num_letters(word))//' letters, more than '// &
                 as_text(most_letters)
+    else if (len(word) > longest_name) then
+      problem = 'a name of '//as_text(len(word))//' bytes in UTF-8, more than '// &
+                as_text(longest_name)
     else if (word == '.' .or. word == '..') then
       problem = "found '"//word//"', which is no name"
     else if (any([(ichar(word(i:i)) < ichar(' '), i=1, len(word))])) then

@@ -136,13 +136,21 @@ def test_a_run_goes_on_with_a_deck_in_latin1(keyway, run_in, encoding):
     assert list(run.json["joints"]) == ["FUGEÄ"]
 
 
-@pytest.mark.parametrize("letter", ["Ä", "€", "x"])
-def test_names_have_80_letters_whatever_their_bytes(keyway, letter):
-    name = letter * 80
+@pytest.mark.parametrize(
+    ("letter", "most", "fault"),
+    [
+        ("Ä", 80, "a name of 81 letters, more than 80"),
+        ("€", 53, "a name of 162 bytes in UTF-8, more than 160"),
+        ("x", 80, "a name of 81 letters, more than 80"),
+    ],
+)
+def test_names_have_80_letters_of_two_bytes(keyway, letter, most, fault):
+    name = letter * most
     files = {file: content.replace("SÄULE", name) for file, content in FILES.items()}
-    keyway(deck().replace("SÄULE", name), "--check", files=files)
+    run = keyway(deck().replace("SÄULE", name), files=files)
+    assert run.csv("node_" + (name.upper() if letter == "x" else "_" * len(name.encode())))
     done = keyway(deck().replace("SÄULE", name + letter), "--check", files=files, code=2)
-    assert "a name of 81 letters, more than 80" in done.stderr
+    assert fault in done.stderr
     near = deck().replace("SÄULE", name).replace("SÖULE\nU", f"{name[:-1]}\nU")
     done = keyway(near, "--check", files=files, code=2)
     assert f"did you mean '{name.upper()}'" in done.stderr
