@@ -89,7 +89,7 @@ program keyway
     if (is_first_rank()) call report_model(options, model, echo, costs, error)
   else if (options%is_material) then
     if (is_first_rank()) then
-      call run_tests(model, options, echo, started_at, error)
+      call run_tests(model, options, remarks, echo, started_at, error)
     else
       call close_user_routines(model)
     end if

@@ -2,6 +2,7 @@
 module run_analysis
   use kinds, only: rk
   use errors, only: error_type, keep_first, raise_unwritten
+  use diagnostic_text, only: remarks_for_log
   use diagnostics, only: diagnostic_list
   use disk_advice, only: explain_failed_write
   use divided_run, only: chosen_checkpoint
@@ -172,7 +173,7 @@ contains
     call catch_signals(results%stem//'.json')
     call results%log%open(given%is_quiet, error, results%stem//'.log', given%is_continued)
     if (allocated(error)) return
-    call results%log%note(echo)
+    call results%log%note(echo//remarks_for_log(results%summary%remarks))
     if (size(model%joints) > 0) call results%log%note(summary_of_joints(model))
     if (earlier /= '') then
       call results%log%say('the earlier run of this job (process and host: '//earlier// &

@@ -1,6 +1,8 @@
 !> Runs and writes the tests of materials. A test that stops does not stop the others.
 module run_material
   use cli, only: command_line
+  use diagnostic_text, only: remarks_for_log
+  use diagnostics, only: diagnostic_list
   use errors, only: error_type, keep_first, raise, system_failed
   use file_system, only: base_name, make_folder, safe_name
   use kinds, only: rk
@@ -20,9 +22,10 @@ module run_material
 contains
 
   !> Runs all tests of the deck. After an error the rows computed so far are in the files.
-  subroutine run_tests(model, given, echo, started_at, error)
+  subroutine run_tests(model, given, remarks, echo, started_at, error)
     type(problem), intent(in) :: model
     type(command_line), intent(in) :: given
+    type(diagnostic_list), intent(in) :: remarks !< warnings of the deck
     character(*), intent(in) :: echo !< the deck with its defaults, for the log
     real(rk), intent(in) :: started_at !< wall clock [s]
     type(error_type), allocatable, intent(out) :: error
@@ -36,7 +39,7 @@ contains
     stem = given%folder//'/'//base_name(model%deck_file)//'_material'
     call log%open(given%is_quiet, error, stem//'.log')
     if (allocated(error)) return
-    call log%note(echo)
+    call log%note(echo//remarks_for_log(remarks))
     allocate (summaries(size(model%tests)))
     do i = 1, size(model%tests)
       call run_test(model, model%tests(i), stem, log, summaries(i), failure)

@@ -63,6 +63,7 @@ set(sources
   text/sha256.f90
   text/text_buffers.f90
   text/text_table.f90
+  text/utf8_text.f90
   text/wrap_text.f90
   text/write_text.f90
 )

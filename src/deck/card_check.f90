@@ -8,12 +8,14 @@ module card_check
   use kinds, only: rk
   use nearest_words, only: nearest_choice, nearest_word
   use parse_text, only: largest_number, parse_integer, parse_real, single_blanks, upper_case
+  use utf8_text, only: num_letters
   use write_text, only: as_text
   implicit none
   private
   public :: check_card, check_given_parameters, check_lines, longest_name
 
-  integer, parameter :: longest_name = 80 !< letters of a name, as in Abaqus
+  integer, parameter :: most_letters = 80 !< of a name, as in Abaqus
+  integer, parameter :: longest_name = 2*most_letters !< bytes: names of files have at most 255
   integer, parameter :: shortest_name = 3 !< letters of an abbreviated parameter
 
 contains
@@ -299,8 +301,12 @@ contains
     character(:), allocatable :: problem
     integer :: i
     problem = ''
-    if (len(word) > longest_name) then
-      problem = 'a name of '//as_text(len(word))//' letters, more than '//as_text(longest_name)
+    if (num_letters(word) > most_letters) then
+      problem = 'a name of '//as_text(num_letters(word))//' letters, more than '// &
+                as_text(most_letters)
+    else if (len(word) > longest_name) then
+      problem = 'a name of '//as_text(len(word))//' bytes in UTF-8, more than '// &
+                as_text(longest_name)
     else if (word == '.' .or. word == '..') then
       problem = "found '"//word//"', which is no name"
     else if (any([(ichar(word(i:i)) < ichar(' '), i=1, len(word))])) then

@@ -1,7 +1,7 @@
 !> Digests of the cards of a deck, so that a run that goes on sees what has changed in the deck.
 module card_digests
   use deck_card, only: card
-  use deck_file, only: path_beside
+  use deck_file, only: path_of_named
   use deck_scan, only: steps_of_cards
   use diagnostics, only: place
   use file_identity, only: add_path, file_path
@@ -67,7 +67,7 @@ contains
     path = ''
     if (.not. this%has('INPUT')) return
     spot = this%place_of('INPUT')
-    path = path_beside(spot%file, this%text('INPUT'))
+    path = path_of_named(spot%file, this%text('INPUT'))
   end function input_of
 
   !> All files that the cards come from or name.

@@ -2,9 +2,10 @@
 module deck_file
   use kinds, only: long
   use process_limits, only: why_no_file
+  use utf8_text, only: latin1_of_utf8, make_utf8
   implicit none
   private
-  public :: load_file, path_beside, first_letter, why_no_deck
+  public :: load_file, load_text, path_beside, path_of_named, first_letter, why_no_text
 
   integer, parameter :: num_looked_at = 4096 !< letters that show the encoding
   character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191) !< UTF-8
@@ -40,6 +41,16 @@ contains
     close (unit)
   end subroutine load_file
 
+  !> Reads a text that holds names: what is Latin-1 in it becomes UTF-8.
+  subroutine load_text(path, text, reason)
+    character(*), intent(in) :: path
+    character(:), allocatable, intent(out) :: text !< in UTF-8
+    character(:), allocatable, intent(out) :: reason !< why it cannot be read, '' for success
+    call load_file(path, text, reason)
+    if (len(reason) == 0) reason = why_no_text(text)
+    if (len(reason) == 0) call make_utf8(text, first_letter(text))
+  end subroutine load_text
+
   !> Where the text of a file begins: after the byte order mark, if there is one.
   pure integer function first_letter(text)
     character(*), intent(in) :: text
@@ -47,8 +58,8 @@ contains
     if (index(text(:min(3, len(text))), byte_order_mark) == 1) first_letter = 4
   end function first_letter
 
-  !> Why the bytes of a file are no text of a deck, with the remedy; '' for a text.
-  pure function why_no_deck(text) result(reason)
+  !> Why the bytes of a file are no text, with the remedy; '' for a text.
+  pure function why_no_text(text) result(reason)
     character(*), intent(in) :: text
     character(:), allocatable :: reason
     reason = ''
@@ -58,7 +69,7 @@ contains
       if (index(text, achar(13)) == len(text)) return ! one line
       reason = 'its lines end with CR alone; save it with the line ends LF or CR LF'
     end if
-  end function why_no_deck
+  end function why_no_text
 
   !> The message of the run-time library without the name of the file.
   pure function cause(message) result(reason)
@@ -80,4 +91,21 @@ contains
     end do
     if (index(joined, './') == 1 .and. index(path, './') /= 1) joined = joined(3:)
   end function path_beside
+
+  !> Path of a file that exists and that another file names. A deck in Latin-1 may name a file whose
+  !> name is in Latin-1 on the disk, too. Else the path in UTF-8.
+  function path_of_named(path, name) result(joined)
+    character(*), intent(in) :: path !< of the naming file
+    character(*), intent(in) :: name !< in UTF-8
+    character(:), allocatable :: joined
+    character(:), allocatable :: other
+    logical :: exists
+    joined = path_beside(path, name)
+    inquire (file=joined, exist=exists)
+    if (exists) return
+    other = path_beside(path, latin1_of_utf8(name))
+    if (other == joined) return
+    inquire (file=other, exist=exists)
+    if (exists) joined = other
+  end function path_of_named
 end module deck_file

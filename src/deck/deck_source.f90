@@ -1,6 +1,6 @@
 !> The lines of a deck with all included files, without blank lines and comments.
 module deck_source
-  use deck_file, only: first_letter, load_file, path_beside, why_no_deck
+  use deck_file, only: first_letter, load_text, path_of_named
   use deck_words, only: is_blank, next_word, split_parameter
   use diagnostics, only: diagnostic_list, place, severity_error
   use file_identity, only: is_same_file
@@ -18,7 +18,7 @@ module deck_source
   !> One file.
   type :: source_file
     character(:), allocatable :: path !< as the user named it
-    character(:), allocatable :: text !< its bytes
+    character(:), allocatable :: text !< in UTF-8
   end type source_file
 
   !> One line that is neither blank nor a comment.
@@ -93,7 +93,7 @@ contains
       if (is_include(source, lines(i))) then
         call read_include(source, lines(i:), faults, name, spot, num_heads)
         if (len(name) > 0) then
-          call read_file(path_beside(path, name), spot, [parents, file], source, faults)
+          call read_file(path_of_named(path, name), spot, [parents, file], source, faults)
         end if
         i = i + num_heads
       else
@@ -119,8 +119,7 @@ contains
       if (is_same_file(source%files(file)%path, path)) return
     end do
     file = 0
-    call load_file(path, new%text, reason)
-    if (len(reason) == 0) reason = why_no_deck(new%text)
+    call load_text(path, new%text, reason)
     if (len(reason) > 0) then
       call faults%add(severity_error, named_at, "cannot read '"//path//"': "//reason)
       return

@@ -10,10 +10,12 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from block_decks import Pair
+from full_disks import DISKS, build_library, settings_of
 from harness import ROOT
 from rank_decks import LAUNCH, MOTION, QUAKE, WEIGHT, BlockOnRock
 
@@ -85,11 +87,24 @@ def test_material(on_ranks):
     assert [file.read_text() for file in divided] == [file.read_text() for file in plain]
 
 
-def test_failing_disk_ends_all(on_ranks, tmp_path):
-    """Rank 0 cannot write: its message ends all ranks with its code."""
+def test_a_file_in_place_of_the_folder_ends_all(on_ranks):
+    """Rank 0 cannot make the folder, which the command line names: its message ends all ranks."""
     program = on_ranks(2)
     (program.folder / "results_job").write_text("a file where the folder should be")
-    assert program(BlockOnRock().deck(WEIGHT), code=3).stderr.count("results_job") == 1
+    stderr = program(BlockOnRock().deck(WEIGHT), code=2).stderr
+    assert stderr.count("a file has this name") == 1
+
+
+@pytest.mark.parametrize("kind", ["nothing", "energy"])
+def test_failing_disk_ends_all(on_ranks, tmp_path, monkeypatch, kind):
+    """Rank 0 cannot write, from the start or later: its message ends all ranks with its code."""
+    program = on_ranks(2)
+    disk = replace(DISKS[kind], size=min(DISKS[kind].size, 100))
+    out = program.folder / "results_job"
+    for name, value in settings_of(disk, build_library(tmp_path), out).items():
+        monkeypatch.setenv(name, value)
+    stderr = program(BlockOnRock().deck(WEIGHT), code=3).stderr
+    assert stderr.count("No space left on device") == 1
 
 
 @pytest.mark.parametrize("ranks", [2, 4])

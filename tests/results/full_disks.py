@@ -65,9 +65,9 @@ def build_library(folder: Path) -> Path:
     return library
 
 
-def run_on(disk: Disk, library: Path, out: Path, command: list) -> subprocess.CompletedProcess[str]:
-    """Runs the program with a disk that becomes full; `out` is the folder on the disk."""
-    settings = {
+def settings_of(disk: Disk, library: Path, out: Path) -> dict[str, str]:
+    """The environment of a program whose disk becomes full; `out` is the folder on the disk."""
+    return {
         "LD_PRELOAD": str(library),
         "FULL_DISK_FOLDER": str(out),
         "FULL_DISK_NAME": disk.name,
@@ -75,6 +75,11 @@ def run_on(disk: Disk, library: Path, out: Path, command: list) -> subprocess.Co
         "FULL_DISK_ERRNO": str(disk.error),
         "FULL_DISK_FILES": str(int(disk.has_inodes)),
     }
+
+
+def run_on(disk: Disk, library: Path, out: Path, command: list) -> subprocess.CompletedProcess[str]:
+    """Runs the program with a disk that becomes full."""
+    settings = settings_of(disk, library, out)
     return subprocess.run(command, env={**os.environ, **settings}, capture_output=True, text=True)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 INPUT = Path(__file__).resolve().parents[2] / "input"
+BASES = Path(__file__).resolve().parents[1] / "errors/base"
 
 
 @pytest.fixture(scope="module")
@@ -191,3 +192,52 @@ def test_fields_that_static_steps_lack_are_told_once(tmp_path, program_path):
     assert about_v == [
         "static steps have no field V: job.h5 and the VTK series are without it there"
     ]
+
+
+def remarks_in(log: str) -> dict[str, list[str]]:
+    """The lines below each heading between the echo of the deck and the first increment."""
+    lines = log.splitlines()
+    headings = [line for line in ("warnings of the deck", "ignored input") if line in lines]
+    places = [lines.index(line) for line in headings]
+    ends = [*places[1:], next(i for i, line in enumerate(lines) if line.startswith("step "))]
+    return {
+        heading: [line for line in lines[place + 1 : end] if "job.inp:" in line]
+        for heading, place, end in zip(headings, places, ends, strict=True)
+    }
+
+
+@pytest.mark.parametrize("options", [(), ("-q",)])
+def test_log_lists_warnings_and_ignored_cards_as_they_were_printed(keyway, options):
+    deck = (BASES / "block.inp").read_text(encoding="utf-8")
+    deck = deck.replace("*STATIC", "*STATIC, SOLVER=PARDISO").replace("*STEP", "*PREPRINT\n*STEP")
+    deck = deck.replace("*BOUNDARY", "*AMPLITUDE, NAME=IDLE\n0., 0., 1., 1.\n*BOUNDARY")
+    deck = deck.replace("*END STEP", "*MONITOR, DOF=1, NODE=1\n*EL FILE\nS, FOO\n*END STEP")
+    run = keyway(deck, *options)
+    found = remarks_in((run.folder / "job.log").read_text(encoding="utf-8"))
+    ignored, warnings = run.json["ignored_input"], run.json["warnings"]
+    assert len(ignored) > 3 and warnings
+    assert len(found["ignored input"]) == len(ignored)
+    for line, card in zip(found["ignored input"], ignored, strict=True):
+        assert f":{card['line']}: *{card['keyword']}: warning: {card['why']}" in line
+    for line, warning in zip(found["warnings of the deck"], warnings, strict=True):
+        assert line.startswith(warning)
+    if not options:
+        printed = [line for line in run.stderr.splitlines() if "job.inp:" in line]
+        assert sorted(printed) == sorted(line for lines in found.values() for line in lines)
+
+
+def test_log_names_long_elements(keyway):
+    """theory.md, 11.5: the log has the number of the elements whose strength is lowered."""
+    deck = (BASES / "concrete.inp").read_text(encoding="utf-8")
+    law = deck[deck.index("*CONCRETE TENSION STIFFENING") : deck.index("*SOLID SECTION")]
+    long = "*CONCRETE TENSION STIFFENING, TYPE=GFI, LONG ELEMENTS=LOWER STRENGTH\n2.48e6, 100.\n"
+    run = keyway(deck.replace(law, long))
+    log = (run.folder / "job.log").read_text(encoding="utf-8")
+    assert any("longer than" in line for line in remarks_in(log)["warnings of the deck"])
+
+
+def test_log_of_material_tests_lists_what_is_ignored(keyway):
+    deck = (BASES / "material_test.inp").read_text(encoding="utf-8")
+    run = keyway("*PREPRINT\n" + deck, "--material")
+    log = (run.folder / "job_material.log").read_text(encoding="utf-8")
+    assert "\nignored input\n" in log

@@ -17,7 +17,15 @@ from harness import ROOT
 from keyway_tools.report import __main__ as report
 from keyway_tools.report.browser import find_browser, opened, print_pdf
 from keyway_tools.report.errors import error_beside, estimates
-from keyway_tools.report.values import accuracy, deck_of, header, key_numbers, title_of, verdict
+from keyway_tools.report.values import (
+    accuracy,
+    deck_of,
+    echo_of,
+    header,
+    key_numbers,
+    title_of,
+    verdict,
+)
 from keyway_tools.results import folder_and_job
 from keyway_tools.si_results import SiResults, Units
 from stage_decks import build
@@ -218,6 +226,14 @@ def test_assumptions_come_from_the_deck(block):
     assert "Shows: *JOINT without strength" in deck.remarks
     assert title_of("** a\n*Heading\n** b\n Dam, 30 m \n*NODE\n") == "Dam, 30 m"
     assert title_of("*NODE\n1, 0\n") == ""
+
+
+def test_echo_of_the_deck_ends_above_its_warnings(tmp_path):
+    log = tmp_path / "job.log"
+    results = SimpleNamespace(path=lambda ending: log)
+    for heading in ("warnings of the deck", "ignored input", "step 1  increment 1"):
+        log.write_text(f"*STEP\n*STATIC\n{heading}\njob.inp:1: *STEP\n")
+        assert echo_of(results) == "*STEP\n*STATIC"
 
 
 def test_estimates_of_errors_are_shown_where_there_are_some(block, tmp_path):

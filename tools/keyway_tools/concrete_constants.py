@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from .command import EXIT_USAGE, command
+from .deck_bytes import read_deck_text
 
 TABLES = (
     "CONCRETE TENSION STIFFENING",
@@ -48,7 +49,7 @@ def _number(word: str) -> float:
 def cards_of(deck: str) -> list[Card]:
     """Keywords in their order; text before the first keyword is left out."""
     cards: list[Card] = []
-    for line in deck.splitlines():
+    for line in deck.removesuffix("\n").split("\n"):
         if line.lstrip().startswith("*") and not line.lstrip().startswith("**"):
             cards.append(Card(line))
         elif cards:
@@ -131,7 +132,7 @@ def as_user_material(deck: str) -> str:
 def main() -> int:
     """Prints the cards of each concrete of a deck."""
     path = Path(sys.argv[1])
-    found = materials_of(path.read_text(encoding="utf-8", errors="replace"))
+    found = materials_of(read_deck_text(path))
     if not found:
         what = "no *CONCRETE DAMAGED PLASTICITY (*INCLUDE is not followed)"
         print(f"make_umat: {path}: {what}", file=sys.stderr)

@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from keyway_tools.deck_bytes import read_deck_text
 from keyway_tools.results import Results
 
 RECORD = ".batch.json"
@@ -70,7 +71,7 @@ def files_of(deck: Path) -> list[Path]:
         found.append(path)
         if path.suffix.lower() == ".at2" or not path.is_file():
             continue
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = read_deck_text(path)
         for line in re.findall(r"^[ \t]*\*(?!\*).*$", text, re.MULTILINE):
             for name in re.findall(r"\bINPUT\s*=\s*(\"[^\"]*\"|[^,\s]+)", line, re.IGNORECASE):
                 waiting.append((path.parent / name.strip('"')).resolve())

@@ -3,6 +3,7 @@ module json_writer
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: rk
   use text_buffers, only: text_buffer
+  use utf8_text, only: letter_of_latin1, utf8_width
   implicit none
   private
   public :: json_text, lower, quoted
@@ -145,7 +146,7 @@ contains
     end if
   end subroutine add_number
 
-  !> A quoted string. Bytes above 127 that are not UTF-8 (old decks hold Latin-1) become '?'.
+  !> A quoted string. Bytes above 127 that are not UTF-8 (in names of files) count as Latin-1.
   subroutine add_quoted(self, text)
     class(json_text), intent(inout) :: self
     character(*), intent(in) :: text
@@ -156,7 +157,7 @@ contains
     do while (i <= len(text))
       width = utf8_width(text(i:))
       if (width == 0) then
-        call self%buffer%add('?')
+        call self%buffer%add(letter_of_latin1(text(i:i)))
       else if (width > 1) then
         call self%buffer%add(text(i:i + width - 1))
       else if (text(i:i) == '"' .or. text(i:i) == achar(92)) then
@@ -171,30 +172,6 @@ contains
     end do
     call self%buffer%add('"')
   end subroutine add_quoted
-
-  !> Bytes of the UTF-8 character at the start of `text`, 0 when there is none.
-  pure integer function utf8_width(text) result(width)
-    character(*), intent(in) :: text
-    integer :: lead, i
-    lead = iachar(text(1:1))
-    select case (lead)
-    case (0:127)
-      width = 1
-    case (194:223)
-      width = 2
-    case (224:239)
-      width = 3
-    case (240:244)
-      width = 4
-    case default
-      width = 0
-    end select
-    if (width > len(text)) width = 0
-    do i = 2, width
-      if (iachar(text(i:i)) < 128 .or. iachar(text(i:i)) > 191) width = 0
-      if (width == 0) exit
-    end do
-  end function utf8_width
 
   !> A text as a string of JSON, with its quotes.
   function quoted(text) result(string)

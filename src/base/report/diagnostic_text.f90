@@ -4,13 +4,16 @@
 !>        12 | 31e9, 31 GPa
 !>           |       ^^^^^^
 module diagnostic_text
-  use diagnostics, only: diagnostic, diagnostic_list, place, severity_error
+  use diagnostics, only: diagnostic, diagnostic_list, place, severity_error, severity_ignored, &
+                         severity_warning
   use fault_kinds, only: fault_kind
   use message_catalogue, only: label_of_fault
+  use text_buffers, only: text_buffer
+  use utf8_text, only: utf8_width
   use write_text, only: as_text
   implicit none
   private
-  public :: text_of_errors, text_of_warnings, headline
+  public :: text_of_errors, text_of_warnings, remarks_for_log, headline
 
   integer, parameter :: widest_line = 100 !< letters of a deck line that are shown
   integer, parameter :: margin = 30 !< letters shown before the word when a line is cut
@@ -95,17 +98,35 @@ contains
   end function order_by_place
 
   !> All warnings and notes on ignored input, without the deck lines; '' without any.
-  function text_of_warnings(list, is_named) result(text)
+  function text_of_warnings(list, is_named, severity) result(text)
     type(diagnostic_list), intent(in) :: list
     logical, intent(in), optional :: is_named !< each message ends with the name of its kind
+    integer, intent(in), optional :: severity !< those of one severity alone
     character(:), allocatable :: text !< lines with new_line between them, none at the end
+    type(text_buffer) :: lines
     integer :: i
-    text = ''
     do i = 1, list%num_warnings
-      if (i > 1) text = text//new_line('a')
-      text = text//named_headline(list%warnings(i), is_named)
+      if (present(severity)) then
+        if (list%warnings(i)%severity /= severity) cycle
+      end if
+      if (lines%length > 0) call lines%add(new_line('a'))
+      call lines%add(named_headline(list%warnings(i), is_named))
     end do
+    text = lines%contents()
   end function text_of_warnings
+
+  !> The warnings and the ignored cards as they are printed, each kind below its heading.
+  function remarks_for_log(list) result(text)
+    type(diagnostic_list), intent(in) :: list
+    character(:), allocatable :: text !< lines with new_line before each; '' without any
+    character, parameter :: nl = new_line('a')
+    character(:), allocatable :: warnings, ignored
+    warnings = text_of_warnings(list, .true., severity_warning)
+    ignored = text_of_warnings(list, .true., severity_ignored)
+    text = ''
+    if (warnings /= '') text = nl//'warnings of the deck'//nl//warnings
+    if (ignored /= '') text = text//nl//'ignored input'//nl//ignored
+  end function remarks_for_log
 
   !> One fault: the headline, the line of the deck, carets, and the place of an earlier definition.
   function text_of_diagnostic(fault, is_named) result(text)
@@ -136,12 +157,12 @@ contains
     text = fault%spot%file//': '
     if (fault%spot%line > 0) text = fault%spot%file//':'//as_text(fault%spot%line)//': '
     if (allocated(fault%spot%keyword)) then
-      if (len(fault%spot%keyword) > 0) text = text//'*'//fault%spot%keyword//': '
+      if (len(fault%spot%keyword) > 0) text = text//'*'//printable(fault%spot%keyword)//': '
     end if
     if (fault%severity /= severity_error) text = text//'warning: '
     text = text//printable(fault%problem)
     if (len(fault%expected) > 0) text = text//'; expected '//fault%expected
-    if (len(fault%nearest) > 0) text = text//"; did you mean '"//fault%nearest//"'?"
+    if (len(fault%nearest) > 0) text = text//"; did you mean '"//printable(fault%nearest)//"'?"
   end function headline
 
   !> The line of the deck and carets below the word; '' where no line is known.
@@ -156,6 +177,13 @@ contains
     if (last > widest_line) then
       first = max(1, min(spot%column - margin, last - widest_line + 1))
       last = min(last, first + widest_line - 1)
+      do while (first > 1 .and. continues_letter(spot%source(first:first)))
+        first = first - 1
+      end do
+      do while (last < len(spot%source))
+        if (.not. continues_letter(spot%source(last + 1:last + 1))) exit
+        last = last + 1
+      end do
     end if
     text = new_line('a')//line_label(as_text(spot%line))//printable(spot%source(first:last))
     if (spot%column == 0 .or. spot%length == 0) return
@@ -209,13 +237,32 @@ contains
   !> The text with control characters turned to '?', since terminals obey them; tabs stay.
   pure function printable(text) result(clean)
     character(*), intent(in) :: text
-    character(len(text)) :: clean
-    integer :: i
+    character(:), allocatable :: clean
+    integer :: i, width, used
     clean = text
-    do i = 1, len(text)
-      if (ichar(text(i:i)) < 32 .and. text(i:i) /= tab .or. ichar(text(i:i)) == 127) then
-        clean(i:i) = '?'
+    i = 1
+    used = 0
+    do while (i <= len(text))
+      width = max(1, utf8_width(text(i:)))
+      if (is_control(text(i:i + width - 1))) then
+        clean(used + 1:used + 1) = '?'
+        used = used + 1
+      else
+        clean(used + 1:used + width) = text(i:i + width - 1)
+        used = used + width
       end if
+      i = i + width
     end do
+    clean = clean(:used)
   end function printable
+
+  !> Whether a letter is a control character: below 32, or from 127 to U+009F; no tab.
+  pure logical function is_control(letter)
+    character(*), intent(in) :: letter !< in UTF-8
+    if (len(letter) == 1) then
+      is_control = ichar(letter) < 32 .and. letter /= tab .or. ichar(letter) == 127
+    else
+      is_control = ichar(letter(1:1)) == 194 .and. ichar(letter(2:2)) < 160
+    end if
+  end function is_control
 end module diagnostic_text

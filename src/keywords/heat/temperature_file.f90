@@ -2,7 +2,7 @@
 !> column for each time.
 module temperature_file
   use deck_card, only: card
-  use deck_file, only: first_letter, load_file, path_beside
+  use deck_file, only: first_letter, load_text, path_of_named
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use heat_plan, only: heat_rule
@@ -42,8 +42,8 @@ contains
     character(:), allocatable :: text, reason
     integer :: first, length
     reader%spot = this%place_of('INPUT')
-    reader%spot%file = path_beside(reader%spot%file, this%text('INPUT'))
-    call load_file(reader%spot%file, text, reason)
+    reader%spot%file = path_of_named(reader%spot%file, this%text('INPUT'))
+    call load_text(reader%spot%file, text, reason)
     if (len(reason) > 0) then
       call this%fault_parameter(faults, 'INPUT', &
                                 "cannot read '"//reader%spot%file//"': "//reason)

@@ -1,5 +1,6 @@
 !> *SURFACE, TYPE=ELEMENT SET: the faces of solids that elements of faces in the deck lie on.
 module surface_of_faces
+  use card_check, only: longest_name
   use dam_mesh, only: surface
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -13,8 +14,6 @@ module surface_of_faces
   implicit none
   private
   public :: find_set_faces
-
-  integer, parameter :: longest_name = 80 !< letters
 
 contains
 

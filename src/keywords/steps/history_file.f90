@@ -1,13 +1,14 @@
 !> Files of numbers that *AMPLITUDE names: plain numbers, or the records of PEER (AT2).
 module history_file
   use, intrinsic :: iso_fortran_env, only: iostat_end
-  use deck_file, only: first_letter
+  use deck_file, only: first_letter, why_no_text
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use kinds, only: rk
   use parse_text, only: largest_number, parse_integer, parse_real, upper_case
   use process_limits, only: why_no_file
   use record_units, only: record_header
+  use utf8_text, only: make_utf8
   implicit none
   private
   public :: number_file, read_numbers, read_at2_header
@@ -53,16 +54,19 @@ contains
         if (status /= 0 .and. len(line) == 0) exit
         number = number + 1
         if (number == 1) line = line(first_letter(line):)
+        if (number == 1 .and. index(line, achar(0)) > 0) reason = why_no_text(line)
+        if (reason /= '') exit
         if (number > num_headers) call add_line(line, number, spot, faults, numbers, used)
         if (status /= 0) exit
       end do
       close (unit)
+      if (reason /= '') call faults%add(severity_error, spot, "cannot read '"//path//"': "//reason)
     end if
     numbers%values = numbers%values(:used)
     numbers%line = numbers%line(:used)
   end subroutine read_numbers
 
-  !> One line of any length.
+  !> One line of any length, in UTF-8.
   subroutine read_line(unit, line, status)
     integer, intent(in) :: unit
     character(:), allocatable, intent(out) :: line
@@ -75,6 +79,7 @@ contains
       line = line//piece(:length)
       if (status /= 0) exit
     end do
+    call make_utf8(line, first_letter(line))
     if (is_iostat_eor(status)) status = 0
     if (status /= 0) status = iostat_end
   end subroutine read_line

@@ -3,7 +3,7 @@ module keywords_amplitude
   use amplitudes, only: amplitude
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, place, severity_error
-  use deck_file, only: path_beside
+  use deck_file, only: path_of_named
   use history_file, only: number_file, read_at2_header, read_numbers
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_text, kind_word
   use keywords_other, only: add_idle_parameters
@@ -105,7 +105,7 @@ contains
         return
       end if
       num_headers = merge(num_at2_headers, 0, this%word('FORMAT') == 'AT2')
-      call read_numbers(path_beside(spot%file, this%text('INPUT')), num_headers, spot, faults, &
+      call read_numbers(path_of_named(spot%file, this%text('INPUT')), num_headers, spot, faults, &
                         numbers)
       return
     end if

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..colour_scale import FIELDS
+from ..deck_bytes import text_of
 from ..result_files import leaves
 from ..results import why_incomplete
 from ..si_results import SiResults
@@ -284,9 +285,9 @@ def deck_of(results: SiResults) -> DeckHeader:
         return DeckHeader(title_of(echo_of(results)), "", caution)
     same = digest_of(content) == deck.get("sha256")
     caution = "" if same else "The deck has changed since the run: this is its text of today."
-    text = content.decode("utf-8", "replace")
+    text = text_of(content)
     remarks = []
-    for line in text.splitlines():
+    for line in text.split("\n"):
         if line.startswith("**"):
             remarks.append(line[2:].removeprefix(" ").rstrip())
         elif line.startswith("*") and not line.upper().startswith("*HEADING"):
@@ -317,13 +318,14 @@ def title_of(text: str) -> str:
 
 def echo_of(results: SiResults) -> str:
     """The deck as the program has read it, all defaults filled in: the start of job.log."""
+    ends = ("warnings of the deck", "ignored input", "step ", "finished", "stopped")
     try:
         lines = results.path(".log").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return ""
     kept = []
     for line in lines:
-        if line.startswith(("step ", "finished", "stopped")):
+        if line.startswith(ends):
             break
         kept.append(line)
     return "\n".join(kept[:2000])

@@ -12,6 +12,8 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..deck_bytes import read_deck_text
+
 # Cards with files beside the deck: the file is named by this parameter.
 FILE_PARAMETER = "INPUT"
 LONGEST_LINE = 100
@@ -155,7 +157,7 @@ def _lines_of(path: Path, sources: set[Path]) -> Iterator[tuple[str, Path]]:
     """
     sources.add(path)
     include, is_open = None, False
-    for line in map(str.strip, path.read_text(encoding="utf-8-sig", errors="replace").splitlines()):
+    for line in map(str.strip, read_deck_text(path).split("\n")):
         if not line or line.startswith("**"):
             continue
         if include and is_open and not line.startswith("*") and _has_parameters(line):

@@ -13,6 +13,7 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..deck_bytes import read_deck_text
 from .deck_cards import Card, Deck, fields_of, number_of
 from .mesh_sets import element_rows
 
@@ -77,7 +78,7 @@ def flat(deck: Deck, keeps_c3d8: bool = False) -> Deck:
     new = Deck(cards, dict(deck.files))
     for k, card in enumerate(new.of("TEMPERATURE"), 1):
         if name := (card.parameters.get("INPUT") or "").strip("\"'"):
-            text = deck.files.get(name) or Path(name).read_text(encoding="utf-8")
+            text = deck.files.get(name) or read_deck_text(Path(name))
             new.files[f"flat_temperatures_{k}.csv"] = rows_rewritten(text, instances)
             card.parameters["INPUT"] = f'"flat_temperatures_{k}.csv"'
     return new
@@ -86,7 +87,7 @@ def flat(deck: Deck, keeps_c3d8: bool = False) -> Deck:
 def rows_rewritten(text: str, instances: dict[str, Instance]) -> str:
     """The rows of a file of temperatures, with the names and numbers of the flat model."""
     rows = []
-    for line in text.splitlines():
+    for line in text.removesuffix("\n").split("\n"):
         name, comma, rest = line.partition(",")
         found = in_instance(name.strip(), instances)
         rows.append((label(found[1], instances[found[0]]) if found else name) + comma + rest)

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..deck_bytes import read_deck_text
 from .deck_cards import Card, Deck, fields_of, number_of
 from .mesh_sets import MeshSets, RefinementError
 
@@ -152,9 +153,9 @@ def rows_of(
 ) -> Iterator[tuple[tuple[str, ...], str, tuple[float, ...]]]:  # fmt: skip
     """Times of the columns, node or set, and values: rows of a file, then data lines."""
     if name := (card.parameters.get("INPUT") or "").strip('"'):
-        text = deck.files.get(name) or Path(name).read_text(encoding="utf-8")
+        text = deck.files.get(name) or read_deck_text(Path(name))
         times: tuple[str, ...] = ()
-        for line in map(str.strip, text.splitlines()):
+        for line in map(str.strip, text.split("\n")):
             if not line or line[0] in "*#":
                 continue
             label, *items = (item.strip() for item in fields_of(line))

@@ -34,13 +34,13 @@ contains
                     '  "x": [5.000000000000E-001, -2.000000000000E+000]'//nl//'}'//nl, 'document')
   end subroutine test_nesting
 
-  !> Quotes, backslashes, control characters, UTF-8 and stray Latin-1 bytes.
+  !> Quotes, backslashes, control characters, UTF-8, and bytes of Latin-1, which become UTF-8.
   subroutine test_escapes(log)
     type(test_log), intent(inout) :: log
     type(json_text) :: json
     character(*), parameter :: umlaut = char(195)//char(188)
     call json%put_text('a"b'//achar(92)//achar(9)//umlaut//char(252)//'z')
     call check_text(log, json%contents(), '"a'//achar(92)//'"b'//achar(92)//achar(92)// &
-                    achar(92)//'u0009'//umlaut//'?z"'//new_line('a'), 'string')
+                    achar(92)//'u0009'//umlaut//umlaut//'z"'//new_line('a'), 'string')
   end subroutine test_escapes
 end program test_json_writer

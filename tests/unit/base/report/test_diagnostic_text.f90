@@ -1,6 +1,6 @@
 !> What a person reads about a fault, letter by letter.
 program test_diagnostic_text
-  use diagnostic_text, only: text_of_errors, text_of_warnings
+  use diagnostic_text, only: remarks_for_log, text_of_errors, text_of_warnings
   use diagnostics, only: diagnostic_list, place, severity_error, severity_ignored, &
                          severity_warning
   use kinds, only: rk
@@ -18,6 +18,8 @@ program test_diagnostic_text
   call many()
   call order()
   call numbers()
+  call remarks()
+  call odd_letters()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -153,4 +155,38 @@ contains
     call check_text(log, as_text(1.0_rk/3.0_rk), '0.333333', 'a third')
     call check_text(log, as_text(999999.4_rk), '999999', 'six digits')
   end subroutine numbers
+
+  !> The log has the warnings first, whatever their order, then the ignored cards.
+  subroutine remarks()
+    type(diagnostic_list) :: list
+    call check_text(log, remarks_for_log(list), '', 'no remarks')
+    call list%add(severity_ignored, spot_of(3, 1, 1, 'x'), 'has no effect')
+    call list%add(severity_warning, spot_of(4, 1, 1, 'x'), 'is odd')
+    call list%add(severity_ignored, spot_of(5, 1, 1, 'x'), 'has none either')
+    call check_text(log, remarks_for_log(list), lf//'warnings of the deck'//lf// &
+                    text_of_warnings(list, .true., severity_warning)//lf//'ignored input'//lf// &
+                    text_of_warnings(list, .true., severity_ignored), 'remarks')
+    call check(log, index(remarks_for_log(list), 'dam.inp:3: *ELASTIC: warning: has no') > &
+               index(remarks_for_log(list), 'ignored input'), 'ignored cards below their heading')
+  end subroutine remarks
+
+  !> No control character is shown, and no part of a letter where a long line is cut.
+  subroutine odd_letters()
+    type(diagnostic_list) :: list, start, ending, named
+    type(place) :: spot
+    character(*), parameter :: csi = char(194)//char(155) !< terminals obey U+009B
+    call list%add(severity_error, spot_of(1, 4, 1, 'a'//csi//'bc'), 'is odd')
+    call check_text(log, text_of_errors(list), 'dam.inp:1: *ELASTIC: is odd'//lf// &
+                    '    1 | a?bc'//lf//'      |   ^', 'a control character above 127')
+    call start%add(severity_error, spot_of(1, 2, 2, 'a'//repeat(umlaut, 150)), 'is long')
+    call check(log, index(text_of_errors(start), '| a'//repeat(umlaut, 50)//lf) > 0, &
+               'whole letters at the end of what is shown')
+    call ending%add(severity_error, spot_of(1, 301, 1, repeat(umlaut, 150)//'z'), 'is long')
+    spot = spot_of(1, 0, 0, 'x')
+    spot%keyword = 'A'//csi//'B'
+    call named%add(severity_error, spot, 'is odd')
+    call check(log, index(text_of_errors(named), '*A?B: is odd') > 0, 'a keyword')
+    call check(log, index(text_of_errors(ending), '| '//repeat(umlaut, 50)//'z'//lf) > 0, &
+               'whole letters at the start of what is shown')
+  end subroutine odd_letters
 end program test_diagnostic_text
