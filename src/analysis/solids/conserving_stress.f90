@@ -111,10 +111,10 @@ contains
     real(rk), intent(in) :: weight
     type(point_state), intent(in) :: old, new
     type(block_answer), intent(inout) :: answer
-    real(rk) :: stress(6), slope(6, 6)
+    real(rk) :: stress(6), of_element(part%points_of_element, 6), slope(6, 6)
     real(rk), allocatable :: gradient(:, :)
     type(point_work) :: own
-    integer :: e, q, p, i
+    integer :: e, q, p, last
     if (allocated(answer%correction)) deallocate (answer%correction)
     if (all(new%is_elastic)) return
     allocate (answer%correction(hex8_dofs, size(part%elements)), source=0.0_rk)
@@ -122,19 +122,20 @@ contains
       call differentiate_energy(law, part, time, old, new, gradient)
     end if
     do e = 1, size(part%elements)
+      last = e*part%points_of_element
+      if (all(new%is_elastic(last - part%points_of_element + 1:last))) cycle
+      of_element = 0.0_rk
       do q = 1, part%points_of_element
-        p = (e - 1)*part%points_of_element + q
+        p = last - part%points_of_element + q
         if (new%is_elastic(p)) cycle
         own = work_at(old, new, p)
         call correct_stress(part%d, own, stress)
-        stress = part%weight(q, e)*stress
-        do i = 1, hex8_dofs
-          answer%correction(i, e) = answer%correction(i, e) + sum(part%b(:, i, q, e)*stress)
-        end do
+        of_element(q, :) = part%weight(q, e)*stress
         if (.not. allocated(gradient)) cycle
         call correct_stress(part%d, own, stress, answer%tangent(:, :, p), gradient(:, p), slope)
         answer%tangent(:, :, p) = answer%tangent(:, :, p) + weight*slope
       end do
+      call part%add_forces(e, of_element, answer%correction(:, e))
     end do
   end subroutine correct_block
 
