@@ -1,5 +1,6 @@
-!> The single list of options of the command line. The help, the search for misspelt options and the
-!> checks of values are made from it; `cli` stores what the user gave.
+!> The single list of options of the command line. The help, the search for misspelt options and
+!> the checks of values are made from it. `cli` stores what the user gave, and checks by itself
+!> which options of a UMAT were given without one.
 module option_table
   implicit none
   private
@@ -64,12 +65,14 @@ contains
     type(option) :: options(num_options)
     integer :: i
     options = all_options()
-    is_known = .true.
+    is_known = index(word, '|') == 0
+    if (.not. is_known) return
     do i = 1, size(options)
       given = options(i)
+      if (given%name == '--help' .and. word == '-h') return
       if (index('|'//spellings(given)//'|', '|'//word//'|') > 0) return
     end do
-    is_known = word == '-h' ! the last option is the help
+    is_known = .false.
   end subroutine find_option
 
   !> Words that an option may be, with | between them.

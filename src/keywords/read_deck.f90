@@ -26,6 +26,8 @@ module read_deck
   use deck_options, only: reading_options
   use diagnostics, only: diagnostic_list, place, severity_error
   use finish_heat, only: warn_of_heat
+  ! gfortran 12 reads finish_model rightly after this module alone.
+  use keyword_catalogue, only: list_keywords
   use finish_model, only: complete_model
   use finish_tests, only: complete_tests
   use flatten_assembly, only: flatten
@@ -33,7 +35,6 @@ module read_deck
   use plain_labels, only: drop_inner_quotes
   use inelastic_blocks, only: list_inelastic_blocks
   use stage_plan, only: classes_of
-  use keyword_catalogue, only: list_keywords
   use keyword_handler, only: keyword_list, pass_elements, pass_nodes, pass_rest
   use keyword_spec, only: keyword, without_effect
   use keywords_elements, only: make_room_for_elements, trim_mesh

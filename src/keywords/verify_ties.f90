@@ -53,9 +53,9 @@ contains
     if (allocated(error)) return
     if (tied%bodies%num_blocks > most_bodies) then
       call model%cards(model%procedure_card(first))%warn( &
-        faults, 'the model has '//as_text(tied%bodies%num_blocks)//' parts that ties and '// &
-        'equations do not make one body: whether one of them is free to move is not checked, '// &
-        'which takes at most '//as_text(most_bodies)//' parts')
+        faults, 'ties and equations leave '//as_text(tied%bodies%num_blocks)//' separate '// &
+        'parts; the check for parts that are free to move is left out above '// &
+        as_text(most_bodies)//' parts: see to their supports')
       return
     end if
     call verify_steps(model, tied, faults)

@@ -9,7 +9,6 @@
 !> that the structure takes under the tractions of the laws, times the stiffness of the structure at
 !> each point alone, over the tractions.
 program solve_joint_problems
-  use equilibrium, only: balance_outcome
   use errors, only: error_type
   use hdf5_archive, only: hdf5_store
   use block_compliance, only: take_blocks

@@ -11,6 +11,8 @@ import h5py
 
 SAVED = Path(__file__).resolve().parent / "saved"
 METHODS = ("policy", "newton", "sweeps", "passes")
+# Of stages, and of water that follows openings: the problems were saved before.
+ABSENT = {"is_pressed", "lets_water_in", "origin", "part_origin", "phase"}
 
 
 @dataclass(frozen=True)
@@ -55,12 +57,9 @@ def unpack(folder: Path, files: list[Path]) -> list[Path]:
 
 
 def add_absent(path: Path) -> None:
-    """Adds what histories of joints have in models with stages alone: vectors without values.
-
-    The problems were saved before there were stages.
-    """
+    """Adds what histories of joints lack: vectors without values."""
     with h5py.File(path, "r+") as file:
         for problem in (file[name] for name in file if name.startswith("problem_")):
             for joint in (problem[name] for name in problem if name.startswith("joint_")):
-                for name in {"is_pressed", "origin", "part_origin", "phase"} - set(joint):
+                for name in ABSENT - set(joint):
                     joint[name] = h5py.Empty("i4")

@@ -3,6 +3,7 @@
 import doctest
 import sys
 
+import h5py
 import pytest
 from harness import ROOT
 from keyway_tools import deck_bytes
@@ -39,6 +40,17 @@ def test_decks_that_are_written_again_keep_their_names(path, keyway):
     assert "MAUERÄ" in text and "BETÖN" in text and "Größe" not in text
     written = keyway(text, name="again").json
     assert written["status"] == "finished"
+
+
+def test_names_of_materials_are_whole_in_the_results(keyway):
+    """80 letters of two bytes each, the last of which tells two materials apart."""
+    names = ["Ä" * 79 + last for last in "ÖÜ"]
+    second = (
+        DECK[DECK.index("*MATERIAL, NAME=BETÖN") :].split("*SOLID")[0].replace("BETÖN", names[1])
+    )
+    run = keyway(second + DECK.replace("BETÖN", names[0]))
+    with h5py.File(run.folder / f"{run.job}.h5") as file:
+        assert {name.decode() for name in file["mesh/material_names"][:]} >= set(names)
 
 
 def test_report_shows_the_remarks(path, keyway):

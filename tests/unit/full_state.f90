@@ -286,8 +286,9 @@ contains
     allocate (history%gap(2), history%shift(2), history%jump(3, 2), history%traction(3, 2), &
               history%slip(2, 2), history%is_broken(2), history%status(2), &
               history%num_openings(2), history%friction_work(2), history%fracture_work(2), &
-              history%internal(2, 2), history%water(2), history%origin(3, 2), history%phase(2), &
-              history%is_pressed(2), history%part_origin(3, 2, 2))
+              history%internal(2, 2), history%water(2), history%lets_water_in(2), &
+              history%origin(3, 2), history%phase(2), history%is_pressed(2), &
+              history%part_origin(3, 2, 2))
     call fill(history%gap, n)
     call fill(history%shift, n)
     call fill(history%jump, n)
@@ -300,6 +301,7 @@ contains
     call fill(history%fracture_work, n)
     call fill(history%internal, n)
     call fill(history%water, n)
+    call fill(history%lets_water_in, n)
     call fill(history%origin, n)
     call fill(history%phase, n)
     call fill(history%is_pressed, n)

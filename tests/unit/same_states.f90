@@ -297,6 +297,7 @@ contains
     call compare(log, what//'fracture_work', a%fracture_work, b%fracture_work)
     call compare(log, what//'internal', a%internal, b%internal)
     call compare(log, what//'water', a%water, b%water)
+    call compare(log, what//'lets_water_in', a%lets_water_in, b%lets_water_in)
     call compare(log, what//'origin', a%origin, b%origin)
     call compare(log, what//'phase', a%phase, b%phase)
     call compare(log, what//'is_pressed', a%is_pressed, b%is_pressed)

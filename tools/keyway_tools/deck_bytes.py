@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 import codecs
+import contextlib
+import os
 from pathlib import Path
 
 
 def read_deck_text(path: Path) -> str:
     """The text of a file of a deck. Raises OSError."""
     return text_of(path.read_bytes())
+
+
+def place_of(folder: Path, name: str) -> Path:
+    """The file that a deck names, relative to a folder; its name may be in Latin-1 on the disk."""
+    path = folder / name
+    if not path.exists():
+        with contextlib.suppress(UnicodeEncodeError):
+            other = folder / os.fsdecode(name.encode("latin-1"))
+            path = other if other.exists() else path
+    return path.resolve()
 
 
 def text_of(content: bytes) -> str:

@@ -16,7 +16,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from keyway_tools.deck_bytes import read_deck_text
+from keyway_tools.deck_bytes import place_of, read_deck_text
 from keyway_tools.results import Results
 
 RECORD = ".batch.json"
@@ -74,7 +74,7 @@ def files_of(deck: Path) -> list[Path]:
         text = read_deck_text(path)
         for line in re.findall(r"^[ \t]*\*(?!\*).*$", text, re.MULTILINE):
             for name in re.findall(r"\bINPUT\s*=\s*(\"[^\"]*\"|[^,\s]+)", line, re.IGNORECASE):
-                waiting.append((path.parent / name.strip('"')).resolve())
+                waiting.append(place_of(path.parent, name.strip('"')))
     return found
 
 
@@ -82,7 +82,7 @@ def digest_of(deck: Path, program: str) -> str:
     """A digest of the deck, the files it includes and the version of the program."""
     total = hashlib.sha256(program.encode())
     for path in files_of(deck):
-        total.update(path.name.encode())
+        total.update(os.fsencode(path.name))
         total.update(path.read_bytes() if path.is_file() else b"missing")
     return total.hexdigest()
 

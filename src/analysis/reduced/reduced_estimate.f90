@@ -22,7 +22,7 @@ module reduced_estimate
 
   !> Error of a model over its difference from the model with half of the modes.
   real(rk), parameter :: share_of_difference = 0.5_rk
-  !> A step of so little more than whole increments has those alone.
+  !> A remainder below this fraction of an increment is round-off.
   real(rk), parameter :: round_off = 1.0e-9_rk
   !> Openings below this share of the displacements count as closed joints.
   real(rk), parameter :: smallest_share = 1.0e-4_rk
@@ -68,7 +68,7 @@ contains
     difference = share_of_difference*difference
     estimate = 1.0_rk
     if (difference < largest) estimate = difference/largest
-    ! A run without equilibrium does not count for the model.
+    ! Without equilibrium in all increments the estimate is the largest.
     if (n < num_increments_of(plan)) estimate = 1.0_rk
   end subroutine estimate_error
 

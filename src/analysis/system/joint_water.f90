@@ -43,7 +43,7 @@ contains
   subroutine resume_uplift(model, operator, states, groups, costs)
     type(problem), intent(in) :: model
     type(jump_operator), intent(in) :: operator
-    type(joint_state), intent(in) :: states(:) !< with the water of the last increment, if any
+    type(joint_state), intent(in) :: states(:) !< with the open points of the last increment
     type(load_group), intent(inout) :: groups(:)
     type(ledger), intent(in) :: costs
     logical, allocatable :: lets_water_in(:)
@@ -53,7 +53,7 @@ contains
       if (groups(g)%uplift == 0) cycle
       associate (now => states(model%loads(groups(g)%uplift)%item%wet_joint))
         lets_water_in = now%status == state_open
-        if (allocated(now%water)) lets_water_in = abs(now%water) > 0.0_rk
+        if (allocated(now%lets_water_in)) lets_water_in = now%lets_water_in
         call set_uplift(model, operator, lets_water_in, costs, groups(g), changes)
       end associate
     end do
@@ -73,6 +73,7 @@ contains
       allocate (pressure(size(is_open)))
       call water%joint_pressure(is_open, pressure)
       if (.not. allocated(group%pressure)) group%pressure = 0.0_rk*pressure
+      group%lets_water_in = is_open
       has_changed = any(abs(pressure - group%pressure) > 0.0_rk)
       if (has_changed) then
         group%force = 0.0_rk
@@ -129,6 +130,7 @@ contains
     integer :: i, j
     do j = 1, size(states)
       if (allocated(states(j)%water)) deallocate (states(j)%water)
+      if (allocated(states(j)%lets_water_in)) deallocate (states(j)%lets_water_in)
     end do
     do i = 1, size(loads)
       associate (water => model%loads(loads(i)%load)%item)
@@ -153,6 +155,7 @@ contains
     g = findloc(groups%uplift, rule%load, dim=1)
     if (g > 0) then
       pressure = groups(g)%pressure
+      now%lets_water_in = groups(g)%lets_water_in
     else
       call model%loads(rule%load)%item%joint_pressure(now%status == state_open, pressure)
     end if

@@ -21,6 +21,7 @@ module step_damping
   private
   public :: damping_sum, build_damping_sum
 
+  !> C of a step, but for modal damping.
   type :: damping_sum
     real(rk) :: of_mass = 0.0_rk !< a [1/s]
     real(rk) :: of_stiffness = 0.0_rk !< b [s]

@@ -34,6 +34,7 @@ module step_loads
     type(step_load) :: rule
     integer :: uplift = 0 !< position of that uplift load, 0 for none
     real(rk), allocatable :: pressure(:) !< (points of its joint) now, at factor 1 [Pa]
+    logical, allocatable :: lets_water_in(:) !< (points of its joint) open for this pressure
     real(rk), allocatable :: force(:) !< (num_total) at factor 1 [N]
   end type load_group
 

@@ -47,8 +47,8 @@ module newton_condensed
 
 contains
 
-  !> Iterates on the jumps by the policy of all solvers. On return its field
-  !> hold the jumps and tractions of the solution, `new` the histories there.
+  !> Iterates on the jumps by the policy of all solvers. On return the field of `now` has the jumps
+  !> and tractions of the solution, its `new` the histories there.
   subroutine iterate_on_jumps(self, now)
     class(condensed_joints), intent(inout) :: self
     type(joint_increment), intent(inout) :: now !< linearised; its response is for k_ref

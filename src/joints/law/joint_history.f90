@@ -44,6 +44,8 @@ module joint_history
     real(rk), allocatable :: fracture_work(:) !< dissipated when the strength was lost [J/m2]
     real(rk), allocatable :: internal(:, :) !< (variables, points) the law's own history
     real(rk), allocatable :: water(:) !< (points) water pressure, in joints with water
+    !> (points) open for the water of the increment; in joints whose water follows openings
+    logical, allocatable :: lets_water_in(:)
     !> (3, points) relative displacement of the nodes where that of the law is zero: when the point
     !> appeared, or was grouted [m]; in models with stages only
     real(rk), allocatable :: origin(:, :)
@@ -76,6 +78,7 @@ contains
     call file%put('fracture_work', self%fracture_work)
     call file%put('internal', self%internal)
     call file%put('water', self%water)
+    call file%put('lets_water_in', self%lets_water_in)
     call file%put('origin', self%origin)
     call file%put('phase', self%phase)
     call file%put('is_pressed', self%is_pressed)
@@ -100,6 +103,7 @@ contains
     call file%get('internal', self%internal)
     if (.not. allocated(self%gap)) return
     call file%get('water', self%water, shape(self%gap))
+    call file%get('lets_water_in', self%lets_water_in, shape(self%gap))
     call file%get('origin', self%origin, [3, size(self%gap)])
     call file%get('phase', self%phase, shape(self%gap))
     call file%get('is_pressed', self%is_pressed)

@@ -33,7 +33,9 @@ module singular_places
   real(rk), parameter :: margin = 1.15_rk
   real(rk), parameter :: all_around = 0.97_rk !< of a full sphere: a place inside
   integer, parameter :: most_steps = 20 !< of Newton's method
-  real(rk), parameter :: found = 1.0e-3_rk !< of the distance of the same place
+  !> Distance of a point of the element from the place, over the distance of the same place, at
+  !> which Newton's method has found it.
+  real(rk), parameter :: near_enough = 1.0e-3_rk
 
 contains
 
@@ -200,7 +202,7 @@ contains
     is_found = .false.
     do i = 1, most_steps
       left(:, 1) = x - matmul(corners, shape_at(xi))
-      is_found = norm2(left) <= found*reach
+      is_found = norm2(left) <= near_enough*reach
       if (is_found) return
       call solve_dense(matmul(corners, derivative_at(xi)), left, step, is_singular)
       if (is_singular) return

@@ -72,8 +72,9 @@ contains
     call enter(rows, last, result_field( &
                name='RF', meaning='reaction', endings=vector, unit='N', place=at_nodes, &
                remark='Zero where no degree of freedom is prescribed. In a dynamic step RF '// &
-               'balances the stresses and tractions at the end of an increment, A those that '// &
-               'joints and RECOVERY=ENERGY carry on (theory.md, (7.3) and (12.7)).', &
+               'is in equilibrium with the stresses and tractions at the end of the '// &
+               'increment, A with the weighted forces of the increment (theory.md, (7.3) and '// &
+               '(12.7)); the two differ with joints or RECOVERY=ENERGY.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=reaction, &
                is_there=has_reactions))
     call enter(rows, last, result_field( &

@@ -3,7 +3,7 @@
 !> Upstream is the surface of the reservoir. Downstream are the outer faces of the dam that face
 !> away from the nearest upstream facet and are not covered by joints or ties. The dam is the part
 !> with mass where the rock has none; otherwise the sections with the surface of the reservoir, and
-!> those behind them: a facing is not the dam.
+!> those behind them: a facing is not the dam. A facing that joints or ties hold is not recognised.
 module dam_faces
   use kinds, only: rk
   use dam_mesh, only: fe_mesh, surface

@@ -39,8 +39,13 @@ contains
   subroutine write_mesh(file, model)
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: model
-    character(80) :: names(size(model%materials))
-    integer :: m
+    character(:), allocatable :: names(:)
+    integer :: longest, m
+    longest = 1
+    do m = 1, size(model%materials)
+      longest = max(longest, len(model%materials(m)%name))
+    end do
+    allocate (character(longest) :: names(size(model%materials)))
     do m = 1, size(model%materials)
       names(m) = model%materials(m)%name
     end do

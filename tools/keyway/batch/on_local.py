@@ -16,9 +16,13 @@ REQUESTS = (signal.SIGINT, signal.SIGTERM)  # to end the runs
 
 
 def interrupt(*_: object) -> None:
-    """Interrupts once: timeout sends its signal to the process and then to its group, too."""
+    """Interrupts once: timeout sends its signal to the process and then to its group, too.
+
+    Further signals do nothing here. They are not ignored, for a run that starts now would ignore
+    them, too.
+    """
     for number in REQUESTS:
-        signal.signal(number, signal.SIG_IGN)
+        signal.signal(number, lambda *_: None)
     raise KeyboardInterrupt
 
 

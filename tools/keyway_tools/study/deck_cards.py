@@ -12,7 +12,7 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..deck_bytes import read_deck_text
+from ..deck_bytes import place_of, read_deck_text
 
 # Cards with files beside the deck: the file is named by this parameter.
 FILE_PARAMETER = "INPUT"
@@ -138,7 +138,7 @@ class Deck:
         texts = {path.name: self.text(), **self.files}
         for name, text in texts.items():
             file = path.parent / name
-            if not file.exists() or file.read_text(encoding="utf-8") != text:
+            if not file.exists() or file.read_bytes() != text.encode():
                 file.write_text(text, encoding="utf-8")
 
 
@@ -187,7 +187,7 @@ def _head_of(line: str) -> tuple[str, str]:
 
 def _place_of(card: Card, folder: Path) -> Path:
     """The file of a card; its path is relative to the file that names it."""
-    return (folder / (card.parameters[FILE_PARAMETER] or "").strip("\"'")).resolve()
+    return place_of(folder, (card.parameters[FILE_PARAMETER] or "").strip("\"'"))
 
 
 def _cards_of_lines(lines: Iterable[tuple[str, Path]]) -> Iterator[Card]:

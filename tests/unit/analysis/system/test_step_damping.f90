@@ -115,7 +115,6 @@ contains
     largest = max(1.0_rk, maxval(abs(c)))
     call check_close(log, maxval(abs(values - 2*c))/largest, 0.0_rk, 1.0e-13_rk, what//': values')
     v = [(sin(real(i, rk)), i=1, size(v))]
-    v(system%matrix%num_free + 1:) = 0.0_rk
     call multiply(system%matrix, c, v, expected)
     call system%find_damping_force(v, force)
     call check_close(log, maxval(abs(force - expected))/largest, 0.0_rk, 1.0e-12_rk, what//': C v')
@@ -127,11 +126,14 @@ contains
     call check_close(log, maxval(abs(force - elastic)), 0.0_rk, 1.0e-12_rk*maxval(abs(force)), &
                      what//': elastic force')
     many = spread(v(:system%matrix%num_free), 2, 3)
+    v(system%matrix%num_free + 1:) = 0.0_rk ! prescribed unknowns are at rest there
+    call multiply(system%matrix, c, v, expected)
     call system%find_damping_forces(many, forces)
     call check_close(log, maxval(abs(forces(:, 3) - expected(:size(forces, 1))))/largest, 0.0_rk, &
                      1.0e-12_rk, what//': many velocities')
   end subroutine check_products
 
+  !> An arch of two blocks; every third element has the second material.
   subroutine make_model(num_guests, alpha, beta, model, plan)
     integer, intent(in) :: num_guests
     real(rk), intent(in) :: alpha(2), beta(2)
