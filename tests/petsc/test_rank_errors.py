@@ -42,7 +42,7 @@ def test_free_body(keyway, on_ranks, solver):
     deck is refused.
     """
     coupling = "*NODE\n9999, 0., 0., 20.\n*EQUATION\n2\n1, 3, 1., 160, 3, -1.\n"
-    block = BlockOnRock(coupling=f"{coupling}2\n9999, 1, 1., 160, 1, -1.\n")
+    block = BlockOnRock(coupling=f"{coupling}2\n9999, 1, 1., 1, 1, -1.\n")
     keyway(block.deck(WEIGHT), code=1)
     run = on_ranks(2)(block.deck(WEIGHT), "--solver", solver, code=1)
     assert "free to move" in run.stderr
