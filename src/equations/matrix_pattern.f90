@@ -4,6 +4,7 @@
 !> keep the lower triangle; an unsymmetric tangent has a separate full pattern.
 module matrix_pattern
   use kinds, only: rk
+  use symmetric_product, only: keyway_multiply_one
   use unknown_layout, only: row_layout
   implicit none
   private
@@ -125,73 +126,18 @@ contains
     real(rk), intent(in) :: q(:) !< (num_total)
     real(rk), intent(out) :: y(:) !< (num_total)
     integer :: j, k
-    y = 0.0_rk
     if (matrix%is_symmetric) then
-      j = 1
-      do while (j <= matrix%num_total)
-        if (matrix%alike(j) >= 3) then
-          call multiply_three(matrix, values, j, q, y)
-          j = j + 3
-        else
-          call multiply_one(matrix, values, j, q, y)
-          j = j + 1
-        end if
-      end do
-    else
-      do j = 1, matrix%num_total
-        do k = matrix%column_start(j), matrix%column_start(j + 1) - 1
-          y(matrix%row(k)) = y(matrix%row(k)) + values(k)*q(j)
-        end do
-      end do
+      call keyway_multiply_one(matrix%num_total, size(values), matrix%column_start, matrix%alike, &
+                               matrix%row, values, q, y)
+      return
     end if
+    y = 0.0_rk
+    do j = 1, matrix%num_total
+      do k = matrix%column_start(j), matrix%column_start(j + 1) - 1
+        y(matrix%row(k)) = y(matrix%row(k)) + values(k)*q(j)
+      end do
+    end do
   end subroutine multiply
-
-  !> Adds the product of a column and of its mirror image.
-  pure subroutine multiply_one(matrix, values, j, q, y)
-    type(pattern), intent(in) :: matrix
-    real(rk), intent(in) :: values(:), q(:)
-    integer, intent(in) :: j !< the column
-    real(rk), intent(inout) :: y(:)
-    integer :: k, i
-    real(rk) :: sum_j
-    k = matrix%column_start(j)
-    sum_j = values(k)*q(j)
-    do k = k + 1, matrix%column_start(j + 1) - 1
-      i = matrix%row(k)
-      sum_j = sum_j + values(k)*q(i)
-      y(i) = y(i) + values(k)*q(j)
-    end do
-    y(j) = y(j) + sum_j
-  end subroutine multiply_one
-
-  !> Adds the product of three columns of one node: rows are read and `y` is addressed once for all.
-  pure subroutine multiply_three(matrix, values, j, q, y)
-    type(pattern), intent(in) :: matrix
-    real(rk), intent(in) :: values(:), q(:)
-    integer, intent(in) :: j !< the first column
-    real(rk), intent(inout) :: y(:)
-    integer :: first, second, third, k, i
-    real(rk) :: q1, q2, q3, y1, y2, y3
-    first = matrix%column_start(j)
-    second = matrix%column_start(j + 1)
-    third = matrix%column_start(j + 2)
-    q1 = q(j)
-    q2 = q(j + 1)
-    q3 = q(j + 2)
-    y1 = values(first)*q1 + values(first + 1)*q2 + values(first + 2)*q3
-    y2 = values(first + 1)*q1 + values(second)*q2 + values(second + 1)*q3
-    y3 = values(first + 2)*q1 + values(second + 1)*q2 + values(third)*q3
-    do k = 1, matrix%column_start(j + 3) - third - 1
-      i = matrix%row(third + k)
-      y1 = y1 + values(first + 2 + k)*q(i)
-      y2 = y2 + values(second + 1 + k)*q(i)
-      y3 = y3 + values(third + k)*q(i)
-      y(i) = y(i) + values(first + 2 + k)*q1 + values(second + 1 + k)*q2 + values(third + k)*q3
-    end do
-    y(j) = y(j) + y1
-    y(j + 1) = y(j + 1) + y2
-    y(j + 2) = y(j + 2) + y3
-  end subroutine multiply_three
 
   !> The diagonal.
   pure subroutine diagonal(matrix, values, d)

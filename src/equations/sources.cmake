@@ -15,9 +15,9 @@ set(sources
   matrix_parts.f90
   matrix_pattern.f90
   nested_dissection.f90
-  products/column_products.c
   products/column_products.f90
-  products/pair_product.f90
+  products/symmetric_product.c
+  products/symmetric_product.f90
   solver_catalogue.f90
   solver_cholmod.f90
   solver_petsc.f90

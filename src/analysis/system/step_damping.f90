@@ -25,8 +25,8 @@ module step_damping
   type :: damping_sum
     real(rk) :: of_mass = 0.0_rk !< a [1/s]
     real(rk) :: of_stiffness = 0.0_rk !< b [s]
-    logical :: has_rest = .false.
-    real(rk), allocatable, private :: rest(:) !< values of R in the pattern of the step [N s/m]
+    real(rk), allocatable, private :: rest(:) !< values of R in the pattern of the step [N s/m];
+                                       !< not allocated where R is zero
     type(pattern), private :: thin !< the entries of R that are not zero, for products
     real(rk), allocatable, private :: entries(:) !< their values
   contains
@@ -45,7 +45,7 @@ contains
     type(damping_sum), intent(out) :: sum_of_parts
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
-    logical :: materials_differ
+    logical :: materials_differ, has_rest
     real(rk) :: alpha, beta
     alpha = 0.0_rk
     beta = 0.0_rk
@@ -56,21 +56,19 @@ contains
       own%of_mass = alpha + first%alpha
       own%of_stiffness = beta + first%beta
       materials_differ = has_other_damping(model, first%alpha, first%beta)
-      own%has_rest = materials_differ .or. any_has_matrix(guests, damping_matrix) &
-                     .or. (own%of_mass > 0.0_rk .and. any_has_matrix(guests, mass_matrix)) &
-                     .or. (own%of_stiffness > 0.0_rk .and. any_has_matrix(guests, stiffness_matrix))
-      if (own%is_zero()) return
+      has_rest = materials_differ .or. any_has_matrix(guests, damping_matrix) &
+                 .or. (own%of_mass > 0.0_rk .and. any_has_matrix(guests, mass_matrix)) &
+                 .or. (own%of_stiffness > 0.0_rk .and. any_has_matrix(guests, stiffness_matrix))
+      if (.not. has_rest) return
       call costs%start('assemble', 'damping', 'solver')
       if (materials_differ) then
         call assemble_damping(model, numbers, -first%alpha, -first%beta, matrix, own%rest, error)
         if (allocated(error)) return
-      else if (own%has_rest) then
+      else
         allocate (own%rest(size(matrix%row)), source=0.0_rk)
       end if
-      if (own%has_rest) then
-        call add_guests(model, guests, numbers, matrix, own, costs)
-        call drop_zeros(matrix, own%rest, own%thin, own%entries)
-      end if
+      call add_guests(model, guests, numbers, matrix, own, costs)
+      call drop_zeros(matrix, own%rest, own%thin, own%entries)
       call costs%stop('assemble damping')
     end associate
   end subroutine build_damping_sum
@@ -123,7 +121,7 @@ contains
   !> Whether nothing damps.
   pure logical function is_zero(self)
     class(damping_sum), intent(in) :: self
-    is_zero = .not. (self%has_rest .or. self%of_mass > 0.0_rk .or. self%of_stiffness > 0.0_rk)
+    is_zero = .not. (allocated(self%rest) .or. self%of_mass > 0.0_rk .or. self%of_stiffness > 0.0_rk)
   end function is_zero
 
   !> Adds R v.
@@ -132,7 +130,7 @@ contains
     real(rk), intent(in) :: v(:) !< (num_total)
     real(rk), intent(inout) :: force(:) !< (num_total)
     real(rk) :: product(size(v))
-    if (.not. self%has_rest) return
+    if (.not. allocated(self%rest)) return
     call multiply(self%thin, self%entries, v, product)
     force = force + product
   end subroutine add_rest_force
@@ -143,7 +141,7 @@ contains
     real(rk), intent(in), contiguous :: v(:, :) !< (num_free, velocities)
     real(rk), intent(inout) :: force(:, :) !< (num_free, velocities)
     real(rk), allocatable :: product(:, :)
-    if (.not. self%has_rest) return
+    if (.not. allocated(self%rest)) return
     allocate (product, mold=force)
     call multiply_columns(self%thin, self%entries, v, product)
     force = force + product
@@ -157,6 +155,6 @@ contains
     real(rk), intent(inout) :: values(:)
     if (self%of_mass > 0.0_rk) values = values + (factor*self%of_mass)*mass
     if (self%of_stiffness > 0.0_rk) values = values + (factor*self%of_stiffness)*stiffness
-    if (self%has_rest) values = values + factor*self%rest
+    if (allocated(self%rest)) values = values + factor*self%rest
   end subroutine add_values
 end module step_damping

@@ -8,7 +8,7 @@ module step_system
   use row_tables, only: row_table
   use step_plan, only: step
   use dof_numbering, only: numbering
-  use column_products, only: multiply_columns
+  use column_products, only: multiply_columns, multiply_pair
   use constraint_elimination, only: number_step
   use dense_products, only: times, transposed_times
   use global_vectors, only: diagonal, dot, multiply
@@ -20,7 +20,6 @@ module step_system
   use guest_type, only: guest_reference, mass_matrix, stiffness_matrix
   use joint_operator, only: jump_operator, build_jump_operator
   use joint_separators, only: find_separators, fits_the_end
-  use pair_product, only: multiply_pair
   use ranks, only: add_over_ranks
   use step_damping, only: build_damping_sum, damping_sum
   use step_loads, only: load_group, support, gather_loads, gather_supports

@@ -1,28 +1,41 @@
-!> Products of a sparse matrix with many vectors.
+!> Products of a sparse matrix with two or many vectors: a symmetric matrix is read once for all.
 module column_products
-  use, intrinsic :: iso_c_binding, only: c_double, c_int
   use global_vectors, only: multiply
   use kinds, only: rk
   use matrix_pattern, only: pattern
+  use ranks, only: add_over_ranks
+  use symmetric_product, only: keyway_multiply_eight, keyway_multiply_two
   implicit none
   private
-  public :: multiply_columns
+  public :: multiply_columns, multiply_pair
 
   integer, parameter :: num_together = 8
 
-  interface
-    subroutine keyway_multiply_eight(unknowns, entries, start, row, value, x, y) bind(c)
-      import :: c_double, c_int
-      implicit none
-      integer(c_int), value :: unknowns, entries
-      integer(c_int), intent(in) :: start(unknowns + 1), row(entries)
-      real(c_double), intent(in) :: value(entries)
-      real(c_double), intent(in) :: x(8, unknowns)
-      real(c_double), intent(out) :: y(8, unknowns)
-    end subroutine keyway_multiply_eight
-  end interface
-
 contains
+
+  !> y1 = A x1 and y2 = A x2 over all unknowns, prescribed ones included.
+  subroutine multiply_pair(matrix, values, x1, x2, y1, y2)
+    type(pattern), intent(in) :: matrix
+    real(rk), contiguous, intent(in) :: values(:) !< of A
+    real(rk), intent(in) :: x1(:), x2(:) !< (num_total)
+    real(rk), contiguous, intent(out) :: y1(:), y2(:) !< (num_total)
+    real(rk), allocatable :: x(:, :), y(:, :)
+    if (.not. matrix%is_symmetric) then
+      call multiply(matrix, values, x1, y1)
+      call multiply(matrix, values, x2, y2)
+      return
+    end if
+    allocate (x(2, matrix%num_total), y(2, matrix%num_total))
+    x(1, :) = x1
+    x(2, :) = x2
+    call keyway_multiply_two(matrix%num_total, size(values), matrix%column_start, matrix%alike, &
+                             matrix%row, values, x, y)
+    y1 = y(1, :)
+    y2 = y(2, :)
+    if (.not. matrix%is_shared) return
+    call add_over_ranks(y1)
+    call add_over_ranks(y2)
+  end subroutine multiply_pair
 
   !> y = A x for each column, over the free unknowns; prescribed ones are zero.
   subroutine multiply_columns(matrix, values, x, y)
@@ -55,8 +68,8 @@ contains
     do i = 1, size(x, 1)
       side_by_side(:size(x, 2), i) = x(i, :)
     end do
-    call keyway_multiply_eight(matrix%num_total, size(values), matrix%column_start, matrix%row, &
-                               values, side_by_side, product)
+    call keyway_multiply_eight(matrix%num_total, size(values), matrix%column_start, &
+                               matrix%alike, matrix%row, values, side_by_side, product)
     do i = 1, size(y, 1)
       y(i, :) = product(:size(y, 2), i)
     end do
