@@ -86,6 +86,19 @@ def test_results_are_those_of_the_deck_in_utf8(run_in, encoding):
     assert "joints/FUGEÄ" in plain["h5"]
 
 
+def test_texts_of_the_h5_file_say_that_they_are_utf8(run_in):
+    """h5py reads them as text then; a text without umlauts is ASCII, as before."""
+    run = run_in("utf-8")
+    with h5py.File(run.folder / "job.h5") as file:
+        assert file["/mesh/material_names"].asstr()[0] == "BETÖN"
+        kinds = {
+            name: h5py.check_string_dtype(file["/steps/0001"].attrs.get_id(name).dtype)
+            for name in ("name", "procedure")
+        }
+    assert kinds["name"].encoding == "utf-8"
+    assert kinds["procedure"].encoding == "ascii"
+
+
 def test_check_of_a_deck_in_latin1(run_in):
     def without_cost(run: Run) -> str:
         return run.stdout.partition("Cost on this machine")[0] + run.stderr

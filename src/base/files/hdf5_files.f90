@@ -13,9 +13,11 @@ module hdf5_files
   use hdf5, only: h5pcreate_f, h5pclose_f, h5p_dataset_create_f, h5pset_chunk_f
   use hdf5, only: h5acreate_f, h5awrite_f, h5aclose_f, h5oopen_f, h5oclose_f, h5tcopy_f
   use hdf5, only: h5tset_size_f, h5tset_strpad_f, h5tclose_f, h5t_str_nullpad_f
+  use hdf5, only: h5tset_cset_f, h5t_cset_utf8_f
   use hdf5, only: h5t_native_double, h5t_native_integer, h5t_c_s1
   use kinds, only: rk
   use undo_journal, only: mark_flushed, start_journal, undo_access
+  use utf8_text, only: is_ascii
   implicit none
   private
   public :: hdf5_file, start_hdf5, text_type
@@ -194,6 +196,7 @@ contains
       padded(i) = trim(texts(i))//repeat(achar(0), len(texts) - len_trim(texts(i)))
     end do
     call text_type(len(texts), kind)
+    call set_letters(texts, kind)
     call self%make_dataset(path, kind, int([size(texts)], hsize_t), dataset, space)
     if (self%has_failed) return
     call h5dwrite_f(dataset, kind, padded, int([size(texts)], hsize_t), status)
@@ -211,6 +214,7 @@ contains
     integer :: status
     if (self%has_failed) return
     call text_type(max(1, len(text)), kind)
+    call set_letters([text], kind)
     call h5oopen_f(self%id, path, object, status)
     call h5screate_f(h5s_scalar_f, space, status)
     call h5acreate_f(object, name, kind, space, attribute, status)
@@ -368,6 +372,15 @@ contains
     call h5tset_size_f(kind, int(length, size_t), status)
     call h5tset_strpad_f(kind, h5t_str_nullpad_f, status)
   end subroutine text_type
+
+  !> Says that texts are UTF-8, where they have other letters than those of ASCII.
+  subroutine set_letters(texts, kind)
+    character(*), intent(in) :: texts(:)
+    integer(hid_t), intent(in) :: kind
+    integer :: status, i
+    if (all([(is_ascii(texts(i)), i=1, size(texts))])) return
+    call h5tset_cset_f(kind, h5t_cset_utf8_f, status)
+  end subroutine set_letters
 
   !> Ends the work on an attribute.
   subroutine close_attribute(object, space, attribute)

@@ -2,7 +2,7 @@
 module utf8_text
   implicit none
   private
-  public :: utf8_width, num_letters, make_utf8, letter_of_latin1, latin1_of_utf8
+  public :: is_ascii, utf8_width, num_letters, make_utf8, letter_of_latin1, latin1_of_utf8
 
   character, parameter :: line_feed = achar(10)
 
