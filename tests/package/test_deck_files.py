@@ -125,3 +125,23 @@ def test_the_program_reads_what_was_written(keyway, tmp_path):
     deck.write(tmp_path / "double.inp")
     twice = keyway(tmp_path / "double.inp").csv("node_BASE")["RF1"].sum()
     assert twice == pytest.approx(2.0 * once, rel=1e-9)  # linear; residuals of 1e-12
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])
+@pytest.mark.parametrize("on_disk", ["latin-1", "utf-8"])
+def test_names_with_umlauts(tmp_path, encoding, on_disk):
+    """Decks and names of files in both encodings; a changed deck keeps its own where it can."""
+    path = tmp_path / "dam.inp"
+    path.write_bytes("*INCLUDE, INPUT=Hügel.inp\n*STEP\n*END STEP\n".encode(encoding))
+    included = tmp_path / os.fsdecode("Hügel.inp".encode(on_disk))
+    included.write_bytes("*NODE, NSET=SÄULE\n3, 0., 0., 0.\n".encode(encoding))
+    deck = Deck(path)
+    assert deck.node_set("Säule").tolist() == [3]
+    deck.add_node_set("FÜSSE", [3])
+    deck.write()
+    assert "FÜSSE" in path.read_bytes().decode(encoding)
+    assert Deck(path).node_set("FÜSSE").tolist() == [3]
+    deck.add_node_set("Ω", [3])
+    deck.write()
+    assert "Ω" in path.read_text(encoding="utf-8")
+    assert Deck(path).node_set("FÜSSE").tolist() == [3]

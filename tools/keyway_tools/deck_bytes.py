@@ -7,6 +7,8 @@ import contextlib
 import os
 from pathlib import Path
 
+BYTE_ORDER_MARK = "\ufeff"
+
 
 def read_deck_text(path: Path) -> str:
     """The text of a file of a deck. Raises OSError."""
@@ -30,8 +32,33 @@ def text_of(content: bytes) -> str:
     >>> text_of("FUGEÄ, é\r\n".encode("latin-1") + "Ö".encode())
     'FUGEÄ, é\nÖ'
     """
+    lines = exact_text(content).removeprefix(BYTE_ORDER_MARK).split("\n")
+    return "\n".join(line.removesuffix("\r") for line in lines)
+
+
+def exact_text(content: bytes) -> str:
+    """The same with its byte order mark and line ends."""
+    mark = BYTE_ORDER_MARK if content.startswith(codecs.BOM_UTF8) else ""
     lines = content.removeprefix(codecs.BOM_UTF8).split(b"\n")
-    return "\n".join(_text_of_line(line.removesuffix(b"\r")) for line in lines)
+    return mark + "\n".join(map(_text_of_line, lines))
+
+
+def bytes_like(content: bytes, text: str) -> bytes:
+    r"""The bytes of a text that takes the place of others: in Latin-1 where those were, and where
+    this has all letters and is read as the same text; else in UTF-8.
+
+    >>> bytes_like("Ä".encode("latin-1"), "ÄÖ"), bytes_like("Ä".encode("latin-1"), "Ω")
+    (b'\xc4\xd6', b'\xce\xa9')
+    """
+    old = exact_text(content)
+    if text == old:
+        return content
+    if content != old.encode():
+        with contextlib.suppress(UnicodeEncodeError):
+            latin1 = text.encode("latin-1")
+            if exact_text(latin1) == text:
+                return latin1
+    return text.encode()
 
 
 def _text_of_line(line: bytes) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .card import Card
-from .deck_file import DeckError, DeckFile, read_files, walk
+from .deck_file import DeckError, DeckFile, included_file, read_files, walk
 from .fields import Value
 from .sets import collect, set_text
 from .writing import write_files
@@ -174,8 +174,8 @@ class Deck:
         after, is_mesh = None, False
         for card in self._main.cards:
             if card.is_a("INCLUDE"):
-                path = self._files[(self.path.parent / (card.parameters["INPUT"] or "")).resolve()]
-                is_mesh = any(c.is_a(k) for c in walk(path, self._files) for k in _OF_SETS)
+                file = self._files[included_file(card) or self.path]
+                is_mesh = any(c.is_a(k) for c in walk(file, self._files) for k in _OF_SETS)
             if card.is_a("STEP"):
                 break
             if any(card.is_a(k) for k in _OF_MESH) or (card.is_a("INCLUDE") and is_mesh):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from .card import Card, read_cards
+from keyway_tools.deck_bytes import BYTE_ORDER_MARK, bytes_like, exact_text, place_of
 
-_MARK = "\ufeff"  # byte order mark of UTF-8
+from .card import Card, read_cards
 
 
 class DeckError(ValueError):
@@ -17,16 +17,18 @@ class DeckError(ValueError):
 class DeckFile:
     """One file of a deck as a list of cards."""
 
-    def __init__(self, path: Path, text: str):
+    def __init__(self, path: Path, text: str, content: bytes = b""):
         self.path = path
-        self._mark = _MARK if text.startswith(_MARK) else ""
+        self._mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         self._read = text  # what the file holds
+        self._content = content  # the same as bytes
         *self.cards, self._rest = read_cards(_lines(text[len(self._mark) :]), path)
 
     @classmethod
     def read(cls, path: Path) -> DeckFile:
-        """Read a file; bytes that are no UTF-8 are kept as they are. Raises OSError."""
-        return cls(path, path.read_bytes().decode("utf-8", errors="surrogateescape"))
+        """Read a file in UTF-8 or Latin-1, as the program does. Raises OSError."""
+        content = path.read_bytes()
+        return cls(path, exact_text(content), content)
 
     @property
     def is_changed(self) -> bool:
@@ -49,10 +51,11 @@ class DeckFile:
         """Write a text as the contents of this file, whole or not at all. Raises OSError."""
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f".{path.name}.part")
-        part.write_bytes(text.encode("utf-8", errors="surrogateescape"))
+        content = bytes_like(self._content, text)
+        part.write_bytes(content)
         part.replace(path)
         if path == self.path:
-            self._read = text
+            self._read, self._content = text, content
 
     def remove(self, card: Card) -> None:
         """Remove a card; comments above it stay, above the next card."""
@@ -72,7 +75,7 @@ class DeckFile:
 def included_file(card: Card) -> Path | None:
     """The file that a card names with INPUT; None where it names none."""
     name = card.parameters.get("INPUT") if card.head else None
-    return (card.file.parent / name).resolve() if name else None
+    return place_of(card.file.parent, name) if name else None
 
 
 def _lines(text: str) -> list[str]:

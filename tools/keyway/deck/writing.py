@@ -6,6 +6,8 @@ import os
 from functools import partial
 from pathlib import Path
 
+from keyway_tools.deck_bytes import place_of
+
 from .card import Card
 from .deck_file import DeckError, DeckFile, included_file
 
@@ -62,6 +64,6 @@ def _elsewhere(card: Card, place: Path, files: dict[Path, DeckFile],
     if named is None:
         return card
     moved = targets.get(files[named], named) if named in files else named
-    if moved == (place.parent / (card.parameters["INPUT"] or "")).resolve():
+    if moved == place_of(place.parent, card.parameters["INPUT"] or ""):
         return card
     return card.with_file(Path(os.path.relpath(moved, place.parent)).as_posix())
