@@ -44,6 +44,7 @@ from keyway_tools.temperature.dam_in_deck import (
 from keyway_tools.temperature.field import YEAR, Clock, seasonal_field, write_field
 from keyway_tools.temperature.periodic_wall import Wall
 
+PICTURE = ".png"
 FEW, MANY = 1, 12  # harmonics for a constant level, and for one that changes
 
 
@@ -177,6 +178,8 @@ def main(arguments: list[str] | None = None) -> int:
         dam = read_dam(chosen.deck, chosen.dam, chosen.upstream, chosen.downstream, chosen.up)
         if output.resolve() in dam.sources:
             raise ValueError(f"{output}: the output would overwrite the deck; expected a new file")
+        if output.suffix == PICTURE and not chosen.no_picture:
+            raise ValueError(f"{output}: the picture has this name; expected a table as x.csv")
         climate, times = climate_of(chosen, dam), times_of(chosen)
         is_even = climate.level is None or climate.level.is_constant
         harmonics = FEW if is_even else MANY
@@ -198,7 +201,7 @@ def main(arguments: list[str] | None = None) -> int:
     if not chosen.no_picture:
         from keyway_tools.temperature.pictures import plot_seasons  # VTK is slow to load
 
-        print("wrote", plot_seasons(dam, field, output.with_suffix(".png")))
+        print("wrote", plot_seasons(dam, field, output.with_suffix(PICTURE)))
     return 0
 
 

@@ -278,3 +278,10 @@ def test_the_deck_is_not_overwritten(deck, capsys, name):
     assert make_temperature.main([str(path), *WAVE, "-o", str(file)]) == 2
     assert "the output would overwrite the deck" in capsys.readouterr().err
     assert file.read_text() == before
+
+
+def test_the_picture_does_not_take_the_place_of_the_table(deck, capsys):
+    path, _ = deck
+    assert make_temperature.main([str(path), *WAVE, "-o", str(path.with_name("wall.png"))]) == 2
+    assert "the picture has this name" in capsys.readouterr().err
+    assert not path.with_name("wall.png").exists()

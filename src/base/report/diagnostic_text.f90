@@ -154,14 +154,15 @@ contains
   pure function headline(fault) result(text)
     type(diagnostic), intent(in) :: fault
     character(:), allocatable :: text
-    text = fault%spot%file//': '
-    if (fault%spot%line > 0) text = fault%spot%file//':'//as_text(fault%spot%line)//': '
+    text = printable(fault%spot%file)//':'
+    if (fault%spot%line > 0) text = text//as_text(fault%spot%line)//':'
+    text = text//' '
     if (allocated(fault%spot%keyword)) then
       if (len(fault%spot%keyword) > 0) text = text//'*'//printable(fault%spot%keyword)//': '
     end if
     if (fault%severity /= severity_error) text = text//'warning: '
     text = text//printable(fault%problem)
-    if (len(fault%expected) > 0) text = text//'; expected '//fault%expected
+    if (len(fault%expected) > 0) text = text//'; expected '//printable(fault%expected)
     if (len(fault%nearest) > 0) text = text//"; did you mean '"//printable(fault%nearest)//"'?"
   end function headline
 
