@@ -20,6 +20,7 @@ ROOMS = (
     "base",
     "base/text",
     "base/math",
+    "base/products",
     "base/system",
     "base/files",
     "base/messages",

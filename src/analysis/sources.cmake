@@ -47,6 +47,7 @@ set(sources
   solids/tangent_choice.f90
   stages/stage_entry.f90
   stages/stage_joints.f90
+  stages/stage_nodes.f90
   state/analysis_state.f90
   state/dual_solutions.f90
   state/guest_histories.f90

@@ -21,9 +21,11 @@ set(sources
   math/dense_factor.f90
   math/single_factor.f90
   math/single_solve.c
-  math/dense_products.f90
-  math/fused_products.c
-  math/mixed_products.f90
+  products/dense_products.f90
+  products/fused_products.c
+  products/mixed_products.f90
+  products/symmetric_product.c
+  products/symmetric_product.f90
   math/pivoted_cholesky.f90
   math/row_tables.f90
   math/small_matrix.f90

@@ -16,8 +16,6 @@ set(sources
   matrix_pattern.f90
   nested_dissection.f90
   products/column_products.f90
-  products/symmetric_product.c
-  products/symmetric_product.f90
   solver_catalogue.f90
   solver_cholmod.f90
   solver_petsc.f90

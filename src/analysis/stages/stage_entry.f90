@@ -4,10 +4,8 @@
 !> The mesh says which elements there are; state%origin the displacements at which an element has no
 !> stress.
 module stage_entry
-  use constraint_elimination, only: keep_present
-  use dam_mesh, only: fe_mesh, node_tie, element_is_there
+  use dam_mesh, only: fe_mesh, element_is_there
   use errors, only: error_type
-  use guest_list, only: ties_of
   use joint_parts, only: show_parts
   use kinds, only: rk
   use material_law, only: start_points
@@ -15,8 +13,8 @@ module stage_entry
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
-  use stage_joints, only: fill_joints, harden_pressed, move_points, start_phases
-  use tie_motion, only: follow_ties
+  use stage_joints, only: fill_joints, harden_pressed, move_points, shift_points, start_phases
+  use stage_nodes, only: place_nodes
   use warming, only: heat_points, take_references
   implicit none
   private
@@ -78,14 +76,15 @@ contains
     nodes = pack(mesh%nodes(:, element), mesh%nodes(:, element) > 0)
   end function nodes_of
 
-  !> Elements that come have no stress in the geometry of this moment, and a new history. Nodes that
-  !> come start without displacement, tied ones from the nodes that they follow.
+  !> Elements that come have no stress in the geometry of this moment, and a new history. Where a
+  !> relation that begins to hold moves nodes, old elements and joints keep their stress.
   subroutine move_elements(model, number, now, error)
     type(problem), intent(inout) :: model
     integer, intent(in) :: number !< of the step
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     logical :: was_absent(model%mesh%num_elements), was_node_absent(model%mesh%num_nodes)
+    real(rk) :: change(size(now%u, 1), size(now%u, 2))
     integer :: e
     was_absent = .false.
     was_node_absent = .false.
@@ -94,8 +93,9 @@ contains
       was_node_absent = model%mesh%is_node_absent
     end if
     call show_stage(model, number)
-    call place_nodes(model, was_node_absent, now%u, error)
+    call place_nodes(model, number, was_node_absent, now%u, change, error)
     if (allocated(error)) return
+    call shift_points(model, change, now%joints)
     call move_points(model, number, now%u, now%joints)
     if (.not. allocated(now%origin)) then
       allocate (now%origin(hex8_dofs, model%mesh%num_elements), source=0.0_rk)
@@ -105,33 +105,14 @@ contains
         now%origin(:, e) = 0.0_rk
       else if (was_absent(e)) then
         now%origin(:, e) = gather_vectors(now%u, model%mesh%nodes(:, e))
+      else if (model%mesh%material_of_element(e) > 0) then
+        now%origin(:, e) = now%origin(:, e) + gather_vectors(change, model%mesh%nodes(:, e))
       end if
     end do
     call renew_points(model, was_absent, now)
     call take_references(model, was_absent, now)
     call heat_points(model, now)
   end subroutine move_elements
-
-  !> Displacements of nodes that come.
-  subroutine place_nodes(model, was_absent, u, error)
-    type(problem), intent(in) :: model
-    logical, intent(in) :: was_absent(:) !< (nodes)
-    real(rk), intent(inout) :: u(:, :) !< (3, nodes) [m]
-    type(error_type), allocatable, intent(out) :: error
-    type(node_tie), allocatable :: ties(:)
-    real(rk), allocatable :: followed(:, :)
-    integer :: node
-    do node = 1, size(u, 2)
-      if (model%mesh%is_node_absent(node)) u(:, node) = 0.0_rk
-    end do
-    call ties_of(model%guests, ties)
-    call keep_present(model%mesh, ties)
-    followed = u
-    call follow_ties(ties, followed, error)
-    do node = 1, size(u, 2)
-      if (was_absent(node)) u(:, node) = followed(:, node)
-    end do
-  end subroutine place_nodes
 
   !> The points of inelastic elements that come or go start anew.
   subroutine renew_points(model, was_absent, now)

@@ -11,7 +11,7 @@ module stage_joints
   use step_plan, only: step
   implicit none
   private
-  public :: start_phases, move_points, fill_joints, harden_pressed
+  public :: start_phases, move_points, shift_points, fill_joints, harden_pressed
 
 contains
 
@@ -56,6 +56,27 @@ contains
       call renew_points_of(model, j, u, joints(j))
     end do
   end subroutine move_points
+
+  !> Points that are there keep their jumps where their nodes are given other displacements.
+  subroutine shift_points(model, change, joints)
+    type(problem), intent(in) :: model
+    real(rk), intent(in) :: change(:, :) !< (3, nodes) [m]
+    type(joint_state), intent(inout) :: joints(:)
+    real(rk) :: shift(3)
+    integer :: j, p
+    do j = 1, size(joints)
+      associate (joint => model%joints(j), own => joints(j))
+        do p = 1, joint%num_points
+          if (own%phase(p) == phase_absent) cycle
+          shift = matmul(joint%rotation(:, :, p), relative_displacement(joint, p, change))
+          own%origin(:, p) = own%origin(:, p) + shift
+          if (.not. allocated(own%part_origin)) cycle
+          own%part_origin(:, :, p) = own%part_origin(:, :, p) &
+                                     + spread(shift, 2, size(own%part_origin, 2))
+        end do
+      end associate
+    end do
+  end subroutine shift_points
 
   !> Points of a joint that come or go start anew; their energies dissipated so far remain.
   subroutine renew_points_of(model, number, u, own)

@@ -25,8 +25,8 @@ module step_damping
   type :: damping_sum
     real(rk) :: of_mass = 0.0_rk !< a [1/s]
     real(rk) :: of_stiffness = 0.0_rk !< b [s]
-    real(rk), allocatable, private :: rest(:) !< values of R in the pattern of the step [N s/m];
-                                       !< not allocated where R is zero
+    !> Values of R in the pattern of the step [N s/m]; not allocated where R is zero
+    real(rk), allocatable, private :: rest(:)
     type(pattern), private :: thin !< the entries of R that are not zero, for products
     real(rk), allocatable, private :: entries(:) !< their values
   contains
@@ -121,7 +121,8 @@ contains
   !> Whether nothing damps.
   pure logical function is_zero(self)
     class(damping_sum), intent(in) :: self
-    is_zero = .not. (allocated(self%rest) .or. self%of_mass > 0.0_rk .or. self%of_stiffness > 0.0_rk)
+    is_zero = .not. (self%of_mass > 0.0_rk .or. self%of_stiffness > 0.0_rk &
+                     .or. allocated(self%rest))
   end function is_zero
 
   !> Adds R v.

@@ -2,7 +2,7 @@
  *
  * The matrix is its lower triangle by columns, the diagonal first, with places from 1. The entries
  * of an unknown in all vectors are side by side. */
-#include "../../base/math/each_processor.h"
+#include "../math/each_processor.h"
 #include <stddef.h>
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))

@@ -1,6 +1,6 @@
 /* Products of matrices in double or single precision with vectors in double precision, sums in
  * double precision. Their time is that of reading the matrix: four columns are used at once. */
-#include "each_processor.h"
+#include "../math/each_processor.h"
 #include <stddef.h>
 
 #define VALUE double
