@@ -59,16 +59,18 @@ contains
       has_rest = materials_differ .or. any_has_matrix(guests, damping_matrix) &
                  .or. (own%of_mass > 0.0_rk .and. any_has_matrix(guests, mass_matrix)) &
                  .or. (own%of_stiffness > 0.0_rk .and. any_has_matrix(guests, stiffness_matrix))
-      if (.not. has_rest) return
+      if (.not. has_rest .and. own%is_zero()) return
       call costs%start('assemble', 'damping', 'solver')
       if (materials_differ) then
         call assemble_damping(model, numbers, -first%alpha, -first%beta, matrix, own%rest, error)
         if (allocated(error)) return
-      else
+      else if (has_rest) then
         allocate (own%rest(size(matrix%row)), source=0.0_rk)
       end if
-      call add_guests(model, guests, numbers, matrix, own, costs)
-      call drop_zeros(matrix, own%rest, own%thin, own%entries)
+      if (has_rest) then
+        call add_guests(model, guests, numbers, matrix, own, costs)
+        call drop_zeros(matrix, own%rest, own%thin, own%entries)
+      end if
       call costs%stop('assemble damping')
     end associate
   end subroutine build_damping_sum
