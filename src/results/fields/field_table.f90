@@ -219,7 +219,8 @@ contains
                provider=by_joint, requests='', of_joint=used_slip_of_joint))
     call enter(rows, last, result_field( &
                name='WATER', meaning='water pressure in joints', endings=scalar, unit='Pa', &
-               place=at_joints, remark='Only in joints with UPLIFT (*JOINT LAW).', &
+               place=at_joints, remark='Only in joints with UPLIFT (*JOINT LAW). Zero where '// &
+               'GROUTED is 0.', &
                provider='uplift', requests='', of_joint=water_of_joint))
     call enter(rows, last, result_field( &
                name='GROUTED', meaning='stage of joints', endings=scalar, unit='1', &
