@@ -26,6 +26,7 @@ module load_uplift
     procedure :: add_force
     procedure :: joint_pressure
     procedure :: follow_joint
+    procedure :: remove_pressure
   end type uplift_load
 
 contains
@@ -101,6 +102,13 @@ contains
       end do
     end do
   end subroutine follow_joint
+
+  !> No water, where the surface of the reservoir does not reach the joint.
+  pure subroutine remove_pressure(self)
+    class(uplift_load), intent(inout) :: self
+    self%pressure = 0.0_rk
+    self%force = 0.0_rk
+  end subroutine remove_pressure
 
   !> Adds the forces of a constant profile; does nothing for profile OPEN.
   subroutine add_force(self, mesh, density, force)

@@ -173,7 +173,7 @@ contains
     built%cells%weight = spread(1.0_rk, 1, num_corners)
   end subroutine draw_elements
 
-  !> Rows: normal, slip 1 (horizontal; x when the normal is vertical), slip 2 = normal x slip 1.
+  !> Rows: normal, slip 1 = z x normal (x when the normal is along z), slip 2 = normal x slip 1.
   pure function local_axes(direction) result(rotation)
     real(rk), intent(in) :: direction(3) !< along the normal, of any length
     real(rk) :: rotation(3, 3)

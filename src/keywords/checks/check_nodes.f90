@@ -73,27 +73,41 @@ contains
       call nodes_at(this, line, 1, model, faults, nodes)
       if (is_keyword(this, 'BOUNDARY')) then
         call warn_of_bare_nodes(this, line, nodes, model, 'its support has no effect', faults)
+        if (.not. moves(this, line)) cycle
+        call warn_of_absence(this, line, nodes, model, is_there, &
+                             'its displacement has no effect until the node has one', faults)
       else
         call warn_of_value(this, line, nodes, model, is_held, faults)
-        if (is_keyword(this, 'CLOAD')) call warn_of_absence(this, line, nodes, model, is_there, &
-                                                            faults)
+        if (.not. is_keyword(this, 'CLOAD')) cycle
+        call warn_of_absence(this, line, nodes, model, is_there, &
+                             'the force on it has no effect', faults)
       end if
     end do
   end subroutine warn_of_lines
 
-  !> A force on nodes whose elements *MODEL CHANGE has removed.
-  subroutine warn_of_absence(this, line, nodes, model, is_there, faults)
+  !> Whether a line of *BOUNDARY prescribes a displacement other than zero.
+  pure logical function moves(this, line)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    moves = .false.
+    if (this%word('TYPE') /= 'DISPLACEMENT' .or. this%is_empty_at(line, 4)) return
+    moves = abs(this%real_at(line, 4)) > 0.0_rk
+  end function moves
+
+  !> A force or a displacement on nodes whose elements *MODEL CHANGE has removed.
+  subroutine warn_of_absence(this, line, nodes, model, is_there, why, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line, nodes(:)
     type(draft), intent(in) :: model
     logical, intent(in) :: is_there(:) !< (nodes) has an element in this step
+    character(*), intent(in) :: why !< it matters
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: problem
     integer, allocatable :: absent(:)
     absent = pack(nodes, model%has_element(nodes) .and. .not. is_there(nodes))
     if (size(absent) == 0) return
     problem = 'node '//as_text(model%problem%mesh%node_id(absent(1)))// &
-              ' has no element in this step (*MODEL CHANGE): the force on it has no effect'
+              ' has no element in this step (*MODEL CHANGE): '//why
     if (size(absent) > 1) problem = problem//'; also '//as_text(size(absent) - 1)// &
                                     ' more of the set'
     call this%warn_at(faults, line, 1, problem)

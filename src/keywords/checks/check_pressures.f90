@@ -82,7 +82,7 @@ contains
       kind = merge(2, 1, item%is_hydrostatic)
       faces = item%faces
     type is (reservoir_load)
-      kind = 3
+      if (item%is_hydrostatic .or. item%has_added_mass) kind = 3
       faces = item%faces
     end select
   end subroutine find_faces
@@ -94,16 +94,20 @@ contains
     integer, intent(in) :: element !< position
     integer, intent(in) :: first, second !< loads
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: what
+    character(:), allocatable :: what, remedy
     integer :: found
     associate (loads => model%problem%loads)
       found = card_of(model, s, loads(second)%item)
       what = 'pressure'
-      if (loads(second)%item%family == 'RESERVOIR') what = 'water of *RESERVOIR'
+      remedy = 'a load is replaced under its own name, or with OP=NEW'
+      if (loads(second)%item%family == 'RESERVOIR') then
+        what = 'water of *RESERVOIR'
+        remedy = 'a reservoir is replaced under its own name, and emptied there by HYDROSTATIC=NO'
+      end if
       call model%cards(found)%warn( &
         faults, 'element '//as_text(model%problem%mesh%element_id(element))//' keeps the '// &
         what//" '"//loads(first)%item%target//"' of an earlier step beside '"// &
-        loads(second)%item%target//"': a load is replaced under its own name, or with OP=NEW")
+        loads(second)%item%target//"': "//remedy)
     end associate
   end subroutine warn_of_both
 

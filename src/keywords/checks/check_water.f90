@@ -26,11 +26,34 @@ contains
     step = steps_of_cards(model%cards)
     do i = 1, size(step)
       if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
+      if (empties(model, step, i)) cycle
       call warn_of_effects(model%cards(i), model, step(i), faults)
       call warn_of_height(model%cards(i), model, faults)
       call warn_of_axis(model%cards(i), model, step(i), faults)
     end do
   end subroutine warn_of_water
+
+  !> Whether a card without pressure and mass empties a reservoir of an earlier step.
+  pure logical function empties(model, step, i)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    integer, intent(in) :: i !< card
+    integer :: k
+    empties = .false.
+    if (has_water(model%cards(i))) return
+    do k = i - 1, 1, -1
+      if (step(k) == step(i) .or. .not. is_keyword(model%cards(k), 'RESERVOIR')) cycle
+      if (model%cards(k)%word('NAME') /= model%cards(i)%word('NAME')) cycle
+      empties = has_water(model%cards(k))
+      return
+    end do
+  end function empties
+
+  !> Whether a *RESERVOIR has pressure or mass.
+  pure logical function has_water(this)
+    type(card), intent(in) :: this
+    has_water = this%word('HYDROSTATIC') == 'YES' .or. this%word('ADDED MASS') /= 'NONE'
+  end function has_water
 
   !> Pressure and added mass that have no effect, and parameters of what does not act.
   subroutine warn_of_effects(this, model, s, faults)

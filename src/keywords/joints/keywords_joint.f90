@@ -23,9 +23,9 @@ contains
     spec%place = 'model'
     spec%meaning = 'The law of a joint: traction as a function of relative displacement. '// &
                    'Opening and tension are positive. UPLIFT applies the water pressure of a '// &
-                   'reservoir to both faces of the joint, in the steps and with the factors '// &
-                   'of the reservoir. tn is the traction of the law without the water '// &
-                   'pressure.'
+                   'reservoir to both faces of the joint, with the factors of the reservoir '// &
+                   'in the steps in which its surface reaches the joint. tn is the traction '// &
+                   'of the law without the water pressure.'
     spec%example = '*JOINT LAW, NAME=CONTRACTION, FRICTION=0.6'
     spec%most_lines = 0
     spec%chooser = 'TYPE'

@@ -84,7 +84,8 @@ contains
     end if
   end subroutine check_name
 
-  !> Adds the loads of one joint: one for each load of the reservoir, in any step.
+  !> Adds the loads of one joint: one for each load of the reservoir, in any step. A reservoir whose
+  !> surface grows from step to step has no pressure in the joint until its surface reaches it.
   subroutine fill_joint(model, j, request, lake_name, is_tail, faults)
     type(draft), intent(inout) :: model
     integer, intent(in) :: j !< joint
@@ -93,45 +94,84 @@ contains
     logical, intent(in) :: is_tail !< the reservoir is that of TAIL WATER
     type(diagnostic_list), intent(inout) :: faults
     type(uplift_load) :: water
+    type(face_rim) :: reached, rim
+    logical :: is_dry
     integer :: i, num_before
     if (lake_name == '') return
+    call find_edges(model, j, request%uplift, 0, reached)
+    if (size(reached%upstream) == 0) then
+      if (.not. is_tail) call fault_no_edge(model, j, request, faults)
+      return
+    end if
     num_before = model%num_loads
     do i = 1, num_before
       select type (lake => model%problem%loads(i)%item)
       type is (reservoir_load)
         if (lake%target /= lake_name) cycle
-        call fill_water(model, j, request, lake, is_tail, water, faults)
+        rim = reached
+        if (.not. is_tail) call find_edges(model, j, lake_name, i, rim)
+        is_dry = size(rim%upstream) == 0
+        if (is_dry) rim = reached
+        call fill_water(model, j, request, rim, lake, is_tail, water, faults)
       class default
         cycle
       end select
       if (faults%has_errors()) return
+      if (is_dry) call water%remove_pressure()
       call enter_water(model, i, water, request%profile, lake_name)
     end do
   end subroutine fill_joint
 
-  !> Finds the edges of the joint and the pressures at its points.
-  subroutine fill_water(model, j, request, lake, is_tail, water, faults)
+  !> No surface of the reservoir meets the joint.
+  subroutine fault_no_edge(model, j, request, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: j !< joint
     type(law_request), intent(in) :: request
+    type(diagnostic_list), intent(inout) :: faults
+    call model%cards(model%joints(j)%spot%card)%fault( &
+      faults, "reservoir '"//request%uplift//"' (UPLIFT of law '"//request%law%name// &
+      "') does not reach joint '"//model%problem%joints(j)%name// &
+      "': its surface has no edge in common with the joint", &
+      'a SURFACE of the *RESERVOIR that ends at the edge of the joint')
+  end subroutine fault_no_edge
+
+  !> The edges of the joint: upstream where the surface of one load of UPLIFT's reservoir meets the
+  !> joint, or of the first load that does. The edge upstream is empty where none does.
+  subroutine find_edges(model, j, lake_name, only, rim)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: j !< joint
+    character(*), intent(in) :: lake_name !< of UPLIFT, also for the tail water
+    integer, intent(in) :: only !< load, 0: any of the reservoir
+    type(face_rim), intent(out) :: rim
+    integer, allocatable :: slave(:, :), master(:, :)
+    logical, allocatable :: is_wet(:)
+    integer :: i
+    call list_faces(model, j, slave, master)
+    allocate (rim%upstream(2, 0), rim%downstream(2, 0))
+    do i = 1, model%num_loads
+      if (only > 0 .and. i /= only) cycle
+      select type (lake => model%problem%loads(i)%item)
+      type is (reservoir_load)
+        if (lake%target /= lake_name) cycle
+        call mark_surface(model%problem, lake%faces, is_wet)
+        call choose_rim(model%problem%mesh%x, slave, master, is_wet, rim)
+        if (size(rim%upstream) > 0) return
+      end select
+    end do
+  end subroutine find_edges
+
+  !> The pressures at the points of the joint.
+  subroutine fill_water(model, j, request, rim, lake, is_tail, water, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: j !< joint
+    type(law_request), intent(in) :: request
+    type(face_rim), intent(in) :: rim
     type(reservoir_load), intent(in) :: lake
     logical, intent(in) :: is_tail
     type(uplift_load), intent(out) :: water
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: slave(:, :), master(:, :)
-    logical, allocatable :: is_wet(:)
-    type(face_rim) :: rim
-    call list_faces(model, j, slave, master)
-    call mark_surface(model%problem, upstream_of(model, request, lake, is_tail), is_wet)
-    call choose_rim(model%problem%mesh%x, slave, master, is_wet, rim)
     associate (place => model%cards(model%joints(j)%spot%card), joint => model%problem%joints(j))
-      if (size(rim%upstream) == 0) then
-        call place%fault(faults, "reservoir '"//request%uplift//"' (UPLIFT of law '"// &
-                         request%law%name//"') does not reach joint '"//joint%name// &
-                         "': its surface has no edge in common with the joint", &
-                         'a SURFACE of the *RESERVOIR that ends at the edge of the joint')
-        return
-      end if
       if (size(rim%downstream) == 0 .and. request%profile == 'LINEAR') then
         call place%fault(faults, "joint '"//joint%name//"' has no edge opposite to the one at "// &
                          "reservoir '"//request%uplift//"'", 'a downstream edge, or PROFILE=OPEN')
@@ -140,32 +180,13 @@ contains
       water%wet_joint = j
       water%kind = 'uplift'
       if (request%profile == 'OPEN') then
+        call list_faces(model, j, slave, master)
         call fill_open(model%problem%mesh, joint, rim, slave, lake, water)
       else
         call fill_linear(model%problem%mesh, joint, rim, lake, is_tail, water)
       end if
     end associate
   end subroutine fill_water
-
-  !> The surface that defines the upstream edge: that of UPLIFT, also for the tail water.
-  function upstream_of(model, request, lake, is_tail) result(faces)
-    type(draft), intent(in) :: model
-    type(law_request), intent(in) :: request
-    type(reservoir_load), intent(in) :: lake
-    logical, intent(in) :: is_tail
-    type(surface) :: faces
-    integer :: i
-    faces = lake%faces
-    if (.not. is_tail) return
-    do i = 1, model%num_loads
-      select type (upper => model%problem%loads(i)%item)
-      type is (reservoir_load)
-        if (upper%target /= request%uplift) cycle
-        faces = upper%faces
-        return
-      end select
-    end do
-  end function upstream_of
 
   !> Marks the nodes of a surface.
   subroutine mark_surface(model, faces, is_wet)

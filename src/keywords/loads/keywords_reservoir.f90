@@ -27,7 +27,9 @@ contains
                    'normal (H the depth of the reservoir, h of the point), takes part in the '// &
                    'inertia force of the base motion and has no weight. NORMAL keeps the '// &
                    'block m n n^T of each node, DIAGONAL its diagonal. The surface of the '// &
-                   'first reservoir defines upstream and downstream in the results.'
+                   'first reservoir defines upstream and downstream in the results. The card '// &
+                   'again, in a later step with the same NAME, replaces the water; with '// &
+                   'HYDROSTATIC=NO and no ADDED MASS it empties the reservoir.'
     spec%example = '*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL=105., BED=0., '// &
                    'ADDED MASS=WESTERGAARD'
     spec%most_lines = 0
@@ -66,7 +68,9 @@ contains
     end if
     if (this%real('LEVEL') <= this%real('BED')) then
       call this%fault_parameter(faults, 'LEVEL', "found '"//this%text('LEVEL')//"'", &
-                                'a level above BED, '//this%text('BED')//' m')
+                                'a level above BED, '//this%text('BED')//' m; to empty '// &
+                                'a reservoir of an earlier step give its card again with '// &
+                                'HYDROSTATIC=NO')
       return
     end if
     lake%kind = 'reservoir'

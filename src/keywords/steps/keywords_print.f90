@@ -185,8 +185,11 @@ contains
     spec%meaning = 'History of the points of a joint in '//spec%meaning// &
                    ' (0 open, 1 stick, 2 slip, 3 bonded). The file '// &
                    'always has all columns, whichever fields the card '// &
-                   'names. slip1 is horizontal, slip2 up or down the '// &
-                   'joint.'
+                   'names. With the normal n from the master to the slave, slip1 '// &
+                   'and t1 are along e3 x n (along x where n is along z), slip2 and t2 '// &
+                   'along the product of n and that axis; e3 is the z axis of the deck, '// &
+                   'whatever UP and the weight are. Where z points up, slip1 is horizontal '// &
+                   'and slip2 up the joint; in a level joint both are horizontal.'
     spec%example = '*JOINT PRINT, JOINT=J1, NSET=CREST'
     allocate (spec%parameters, source=[ &
               field('JOINT', kind_word, 'name of the joint', is_required=.true.), &

@@ -73,8 +73,9 @@ contains
                name='RF', meaning='reaction', endings=vector, unit='N', place=at_nodes, &
                remark='Zero where no degree of freedom is prescribed. In a dynamic step RF '// &
                'is in equilibrium with the stresses and tractions at the end of the '// &
-               'increment, A with the weighted forces of the increment (theory.md, (7.3) and '// &
-               '(12.7)); the two differ with joints or RECOVERY=ENERGY.', &
+               'increment, A with the weighted forces of the increment (theory.md, 7.2, RF and '// &
+               'A); the two differ with ALPHA other than 0, with joints and with '// &
+               'RECOVERY=ENERGY.', &
                provider=by_solver, requests='NODE PRINT | NODE FILE', on_nodes=reaction, &
                is_there=has_reactions))
     call enter(rows, last, result_field( &
@@ -198,7 +199,11 @@ contains
                on_nodes=opening_on_nodes, of_joint=opening_of_joint, is_there=has_joints))
     call enter(rows, last, result_field( &
                name='SLIP', meaning='irrecoverable sliding of joints', endings='1,2', unit='m', &
-               place=at_joints, remark='SLIP1 is horizontal, SLIP2 up or down the joint.', &
+               place=at_joints, remark='With the normal n from the master to the slave, SLIP1 '// &
+               'is along e3 x n (along x where n is along z) and SLIP2 along the product of n '// &
+               'and that axis; e3 is the z axis of the deck, whatever UP and the weight are '// &
+               '(theory.md, 2.1). Where z points up, SLIP1 is horizontal and SLIP2 up the '// &
+               'joint; in a level joint both are horizontal.', &
                provider=by_joint, requests='JOINT PRINT', of_joint=slip_of_joint))
     call enter(rows, last, result_field( &
                name='TRACTION', meaning='traction of joints', stem='T', endings='N,1,2', &
@@ -219,7 +224,8 @@ contains
                provider=by_joint, requests='', of_joint=used_slip_of_joint))
     call enter(rows, last, result_field( &
                name='WATER', meaning='water pressure in joints', endings=scalar, unit='Pa', &
-               place=at_joints, remark='Only in joints with UPLIFT (*JOINT LAW).', &
+               place=at_joints, remark='Only in joints with UPLIFT (*JOINT LAW). Zero where '// &
+               'GROUTED is 0.', &
                provider='uplift', requests='', of_joint=water_of_joint))
     call enter(rows, last, result_field( &
                name='GROUTED', meaning='stage of joints', endings=scalar, unit='1', &
