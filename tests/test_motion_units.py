@@ -145,3 +145,16 @@ def test_peak_of_a_step_that_ends_between_two_values(program_path, tmp_path) -> 
     command = [str(program_path.resolve()), "--check", "deck.inp"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert ", peak 0.8 m/s2 = 0.0815 g at t = 0.4 s" in done.stdout
+
+
+@pytest.mark.parametrize("first", ["", "\n"], ids=["text", "an empty line"])
+def test_record_in_utf16(program_path, tmp_path, first) -> None:
+    """Also below an empty line, which has no zero byte in front of its end."""
+    peak_line(program_path, tmp_path, "UNITS OF G", "")
+    record = first + RECORD.format(header="OF A STATION\nUNITS OF G", times="NPTS= 5, DT= .01")
+    (tmp_path / "record.at2").write_bytes(b"\xff\xfe" + record.encode("utf-16-le"))
+    command = [str(program_path.resolve()), "--check", "deck.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "it is in UTF-16" in done.stderr
+    assert done.stderr.count("[") == 1

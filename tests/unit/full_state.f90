@@ -115,6 +115,7 @@ contains
     type(modal_error), intent(inout) :: timing
     integer, intent(inout) :: n
     allocate (timing%exact(2), timing%rate(2), timing%drive(2), timing%error(2))
+    allocate (timing%carried(2), timing%carried_rate(2))
     allocate (timing%square(2, 2), timing%product(2), timing%at_most(2))
     allocate (timing%stiffening(2), timing%softer(2), timing%softer_rate(2))
     allocate (timing%mesh_at_most(2))
@@ -126,6 +127,8 @@ contains
     call fill(timing%mesh_at_most, n)
     call fill(timing%rate, n)
     call fill(timing%drive, n)
+    call fill(timing%carried, n)
+    call fill(timing%carried_rate, n)
     call fill(timing%error, n)
     call fill(timing%most, n)
     call fill(timing%motion, n)

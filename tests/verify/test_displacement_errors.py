@@ -120,7 +120,7 @@ def moved(dt: float) -> str:
     )
 
 
-def test_moving_supports(keyway, documented):
+def test_moving_supports(keyway):
     """The truth: an eighth of the increment, with the same motion of the base."""
     run = keyway(moved(GRID))
     found, u = of_displacement(run), run.csv("node_TOP")["U3"]

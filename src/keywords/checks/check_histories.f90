@@ -17,6 +17,7 @@ module check_histories
 
   real(rk), parameter :: round_off = 1.0e-9_rk
   real(rk), parameter :: seen_share = 0.9_rk !< of the peak: less is a warning
+  real(rk), parameter :: rounded = 0.01_rk !< of a spacing, by times with few digits
   integer, parameter :: most_samples = 10000000
 
 contains
@@ -126,8 +127,8 @@ contains
     end do
     if (seen >= seen_share*peak) then
       if (coarse == s .or. control%finest > 0.0_rk) return
-      if (smallest > spacing_of(record)*(1.0_rk + round_off)) return
-      if (largest <= spacing_of(record)*(1.0_rk + round_off)) return
+      if (smallest > spacing_of(record)*(1.0_rk + rounded)) return
+      if (largest <= spacing_of(record)*(1.0_rk + rounded)) return
       if (.not. model%problem%steps(s)%procedure%has_inertia) return
       if (.not. (is_keyword(this, 'BASE MOTION') .or. is_keyword(this, 'BOUNDARY'))) return
       coarse = s
