@@ -12,14 +12,20 @@ G = 9.81  # m/s2, docs/deck.md
 PEAK = 0.3  # of the record, in its unit
 
 RECORD = """A RECORD
-OF A STATION
 {header}
-NPTS=   5, DT=   .0100 SEC
+{times}
  0. 0.2 -0.3 0.1 0.
 """
 
 
-def peak_line(program: Path, folder: Path, header: str, amplitude: str, motion: str = "") -> str:
+def peak_line(
+    program: Path,
+    folder: Path,
+    header: str,
+    amplitude: str,
+    motion: str = "",
+    times: str = "NPTS=   5, DT=   .0100 SEC",
+) -> str:
     """The line of --check about the base motion."""
     deck = BASE.read_text(encoding="utf-8")
     deck = deck.replace(
@@ -29,7 +35,10 @@ def peak_line(program: Path, folder: Path, header: str, amplitude: str, motion: 
     )
     assert "*BASE MOTION" in deck
     (folder / "deck.inp").write_text(deck, encoding="utf-8")
-    (folder / "record.at2").write_text(RECORD.format(header=header), encoding="utf-8")
+    if "\n" not in header:
+        header = "OF A STATION\n" + header
+    record = RECORD.format(header=header, times=times)
+    (folder / "record.at2").write_text(record, encoding="utf-8")
     done = subprocess.run(
         [str(program.resolve()), "--check", "deck.inp"],
         cwd=folder,
@@ -88,6 +97,9 @@ def test_a_deck_in_metres_and_other_forces(density, young, program_path, tmp_pat
         ("SITE VELOCITY IN ROCK 760 M/S; ACCELERATION IN UNITS OF G", "", "", PEAK * G),
         ("UNITS OF G", ", UNIT=G, SCALE=2.", "", PEAK * G * 2),
         ("UNITS OF G", ", UNIT=G", ", SCALE=0.5", PEAK * G / 2),
+        ("ACCELERATION (CM/S2)\nUNITS OF G", "", "", PEAK / 100),
+        ("units: cm/s2\nTIME SERIES IN UNITS OF G", "", "", PEAK * G),
+        ("units: cm/s2\nUNITS OF G", ", UNIT=G", "", PEAK * G),
         ("no unit", ", UNIT=CM/S2", "", PEAK / 100),
         ("no unit", ", UNIT=M/S2, SCALE=3.", "", PEAK * 3),
         # The user's conversion is not repeated; its digits are kept.
@@ -105,3 +117,44 @@ def test_peak(program_path, tmp_path, header, amplitude, motion, expected) -> No
     assert words[5] == "g"
     assert float(words[4]) == pytest.approx(expected / G, abs=6e-5), "four decimals are printed"
     assert words[-2:] == ["0.02", "s"]
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        "NPTS=5, DT=.01",
+        "NPTS=5 DT=.01 s",
+        "5 .01 NPTS, DT (SECONDS)",
+        "NPTS= 5, DT= .01 SEC, 100 SPS",
+    ],
+)
+def test_times_in_seconds(program_path, tmp_path, times) -> None:
+    line = peak_line(program_path, tmp_path, "UNITS OF G", "", times=times)
+    assert line.split()[-2:] == ["0.02", "s"]
+
+
+def test_peak_of_a_step_that_ends_between_two_values(program_path, tmp_path) -> None:
+    """The record rises over 1 s, the step ends after 0.4 s."""
+    deck = BASE.read_text(encoding="utf-8")
+    deck = deck.replace(
+        "*STEP\n*STATIC\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n",
+        "*AMPLITUDE, NAME=QUAKE\n0., 0., 1., 2., 2., 0.\n*STEP\n*DYNAMIC\n0.01, 0.4\n"
+        "*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n",
+    )
+    (tmp_path / "deck.inp").write_text(deck, encoding="utf-8")
+    command = [str(program_path.resolve()), "--check", "deck.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert ", peak 0.8 m/s2 = 0.0815 g at t = 0.4 s" in done.stdout
+
+
+@pytest.mark.parametrize("first", ["", "\n"], ids=["text", "an empty line"])
+def test_record_in_utf16(program_path, tmp_path, first) -> None:
+    """Also below an empty line, which has no zero byte in front of its end."""
+    peak_line(program_path, tmp_path, "UNITS OF G", "")
+    record = first + RECORD.format(header="OF A STATION\nUNITS OF G", times="NPTS= 5, DT= .01")
+    (tmp_path / "record.at2").write_bytes(b"\xff\xfe" + record.encode("utf-16-le"))
+    command = [str(program_path.resolve()), "--check", "deck.inp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "it is in UTF-16" in done.stderr
+    assert done.stderr.count("[") == 1

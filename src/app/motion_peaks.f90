@@ -1,6 +1,6 @@
 !> Peaks of the base motions of a step, for the summary of a model.
 module motion_peaks
-  use amplitudes, only: one_g
+  use amplitudes, only: amplitude_at, one_g
   use check_units, only: has_other_length
   use kinds, only: rk
   use load_base_motion, only: base_motion
@@ -20,7 +20,7 @@ contains
     integer, intent(in) :: number !< of the step
     type(step_load), intent(in) :: work
     character(:), allocatable :: text
-    real(rk) :: peak, last
+    real(rk) :: peak, at, last
     integer :: i
     text = ''
     select type (motion => model%loads(work%load)%item)
@@ -32,8 +32,14 @@ contains
       associate (record => model%amplitudes(work%amplitude))
         last = end_of_step(model, number, record%uses_total_time)
         i = max(maxloc(abs(record%value), dim=1, mask=record%time <= last), 1)
-        peak = abs(work%end_factor*record%value(i))
-        text = ', peak '//in_units(model, peak)//' at t = '//as_text(record%time(i))//' s'
+        peak = abs(record%value(i))
+        at = record%time(i)
+        if (abs(amplitude_at(record, last)) > peak) then ! the step ends between two values
+          peak = abs(amplitude_at(record, last))
+          at = last
+        end if
+        peak = abs(work%end_factor)*peak
+        text = ', peak '//in_units(model, peak)//' at t = '//as_text(at)//' s'
       end associate
     end select
   end function peak_of_motion

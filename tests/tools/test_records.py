@@ -95,11 +95,26 @@ def write(tmp_path):
     return write_text
 
 
-@pytest.mark.parametrize("heading", ["NPTS=  9, DT= .0050 SEC", "   9   0.0050   NPTS, DT"])
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "NPTS=  9, DT= .0050 SEC",
+        "   9   0.0050   NPTS, DT",
+        "9 .005 NPTS, DT (SEC)",
+        "NPTS=9, DT=.005 s, 200 SPS",
+    ],
+)
 def test_peer_file(write, heading):
     (record,) = read_record(write(at2(VALUES, heading), "a.AT2"))
     assert record.dt == 0.005
     assert record.name == "090"
+    assert record.acceleration == pytest.approx(9.81 * VALUES, rel=1e-12)
+
+
+def test_peer_title_that_names_a_unit(write):
+    """The line that says what the record is has the unit of its values."""
+    text = at2(VALUES).replace("SOMEWHERE", "IN UNITS OF CM/S2")
+    (record,) = read_record(write(text, "a.AT2"))
     assert record.acceleration == pytest.approx(9.81 * VALUES, rel=1e-12)
 
 
@@ -186,6 +201,12 @@ def test_unit_in_a_heading(text, unit):
         (at2(VALUES).replace(at2(VALUES).split()[-1], "******"), {}, "expected finite numbers"),
         (at2(VALUES).replace(".005", ".000"), {}, "time between values '.0000'; expected a number"),
         (at2(VALUES, "NPTS= 0, DT= .005"), {}, "its header says 0 values; expected a record"),
+        (
+            at2(VALUES, "NPTS= 9, DT= 5. MSEC"),
+            {},
+            ":4: found 'MSEC'; expected NPTS= and DT= in sec",
+        ),
+        (at2(VALUES, "9 .005 NPTS, DT, SPS"), {}, ":4: found 'SPS'; expected NPTS= and DT= in sec"),
         (cosmos(VALUES).replace("100 Real", " 10 Real"), {}, "10 real headers; expected 62"),
         (kyoshin([1, "nan"]), {}, "expected finite numbers"),
         (kyoshin([1, 2]).replace("100Hz", "0Hz"), {}, "expected Sampling Freq(Hz)"),

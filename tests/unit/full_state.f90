@@ -1,5 +1,4 @@
-!> A state whose components all have values of their own, for tests of what saves and loads it.
-!> tests/tools/test_archives.py finds a component that is missing here.
+!> A state whose components all have values of their own; tests/tools/test_archives.py sees to it.
 module full_state
   use kinds, only: rk
   use analysis_state, only: state, increment_status, energy_balance, last_matrix, motion, &
@@ -114,10 +113,9 @@ contains
   subroutine fill_timing(timing, n)
     type(modal_error), intent(inout) :: timing
     integer, intent(inout) :: n
-    allocate (timing%exact(2), timing%rate(2), timing%drive(2), timing%error(2))
-    allocate (timing%square(2, 2), timing%product(2), timing%at_most(2))
-    allocate (timing%stiffening(2), timing%softer(2), timing%softer_rate(2))
-    allocate (timing%mesh_at_most(2))
+    allocate (timing%exact(2), timing%rate(2), timing%drive(2), timing%error(2), timing%carried(2))
+    allocate (timing%square(2, 2), timing%product(2), timing%at_most(2), timing%mesh_at_most(2))
+    allocate (timing%stiffening(2), timing%softer(2), timing%softer_rate(2), timing%carried_rate(2))
     call fill(timing%exact, n)
     call fill(timing%stiffening, n)
     call fill(timing%softer, n)
@@ -126,6 +124,8 @@ contains
     call fill(timing%mesh_at_most, n)
     call fill(timing%rate, n)
     call fill(timing%drive, n)
+    call fill(timing%carried, n)
+    call fill(timing%carried_rate, n)
     call fill(timing%error, n)
     call fill(timing%most, n)
     call fill(timing%motion, n)
@@ -207,9 +207,9 @@ contains
     type(motion), intent(inout) :: own
     integer, intent(inout) :: n
     allocate (own%q(4), own%v(4), own%a(4), own%external(4), own%elastic(4), own%internal(4), &
-              own%contact(4), own%balanced(4), &
-              own%viscous(4), own%viscous_rate(4), own%lost_damping(4), own%correction(4), &
-              own%carried_correction(4), own%momentum(4), own%inertia(4), own%carried(3, 4), &
+              own%contact(4), own%balanced(4), own%viscous(4), own%viscous_rate(4), &
+              own%lost_damping(4), own%correction(4), own%carried_correction(4), &
+              own%momentum(4), own%inertia(4), own%carried(3, 4), &
               own%jump_rate(3, 4), own%slope(4), own%bend(4), own%release(4), own%thermal(4))
     call fill(own%q, n)
     call fill(own%v, n)

@@ -134,6 +134,8 @@ contains
     call compare(log, what//'exact', a%exact, b%exact)
     call compare(log, what//'rate', a%rate, b%rate)
     call compare(log, what//'drive', a%drive, b%drive)
+    call compare(log, what//'carried', a%carried, b%carried)
+    call compare(log, what//'carried_rate', a%carried_rate, b%carried_rate)
     call compare(log, what//'error', a%error, b%error)
     call compare(log, what//'most', a%most, b%most)
     call compare(log, what//'motion', a%motion, b%motion)

@@ -103,3 +103,27 @@ def test_increments(keyway, documented, bricks, name, alpha):
     assert 0.5 < found["history"] / history < 2.0
     documented("error of increments", (name, f"{alpha}"), "at the largest", found["time"] / largest)
     documented("error of increments", (name, f"{alpha}"), "history", found["history"] / history)
+
+
+def moved(dt: float) -> str:
+    """The column on a base that *BOUNDARY moves smoothly."""
+    times = np.arange(0.0, DURATION + GRID / 8, GRID / 8)
+    move = 0.02 * np.minimum(times / 2.0, 1.0) ** 3
+    move *= np.sin(4.0 * times) + 0.6 * np.sin(7.5 * times + 1.0)
+    pairs = "".join(f"{t:.10g}, {u:.12g}\n" for t, u in zip(times, move, strict=True))
+    deck = shaken(8, dt, -0.05).replace(
+        "*DLOAD, AMPLITUDE=LOAD\nBODY, GRAV, 1.,",
+        "*BOUNDARY, AMPLITUDE=MOVE\nBASE, 3, 3, 1.\n*DLOAD, AMPLITUDE=LOAD\nBODY, GRAV, 0.1,",
+    )
+    return deck.replace(
+        "*AMPLITUDE, NAME=LOAD\n", f"*AMPLITUDE, NAME=MOVE\n{pairs}*AMPLITUDE, NAME=LOAD\n"
+    )
+
+
+def test_moving_supports(keyway):
+    """The truth: an eighth of the increment, with the same motion of the base."""
+    run = keyway(moved(GRID))
+    found, u = of_displacement(run), run.csv("node_TOP")["U3"]
+    true = keyway(moved(GRID / 8)).csv("node_TOP")["U3"][::8]
+    at = np.argmax(np.abs(u))
+    assert 0.5 < found["time"] / abs(u[at] - true[at]) < 2.0

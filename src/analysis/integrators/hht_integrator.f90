@@ -22,7 +22,7 @@ module hht_integrator
   use kept_solvers, only: solver_shelf
   use energy_account, only: add_dynamic_work
   use solid_iteration, only: solid_solver
-  use support_rates, only: has_moving_supports
+  use support_rates, only: find_slopes, has_moving_supports
   use state_transfer, only: store_motion
   use opening_error, only: error_of_opening, mesh_error_of_opening, note_opening, rocks
   use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
@@ -82,12 +82,24 @@ contains
     if (.not. is_worth_its_cost(plan)) return
     call results%costs%start('estimate', 'time', 'output')
     call make_error_modes(model, self%system, self%solids%solver, self%modes)
-    if (allocated(self%modes%square)) then
-      call start_modal_error(self%modes, now%motion, now%timing)
-    end if
+    if (allocated(self%modes%square)) call follow_modes(self, model, plan, now)
     call results%costs%stop()
     if (allocated(self%modes%square)) call weigh_shapes(self, model, now, results)
   end subroutine open_step
+
+  !> Starts the exact motion of the modes.
+  subroutine follow_modes(self, model, plan, now)
+    type(hht_method), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(step), intent(in) :: plan
+    type(state), intent(inout) :: now
+    type(step_time) :: start
+    real(rk) :: placed(size(now%motion%q))
+    start = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
+    placed = now%motion%q
+    call prescribed_values(self%system%supports, model%amplitudes, start, placed)
+    call start_modal_error(self%modes, now%motion, placed, now%timing)
+  end subroutine follow_modes
 
   !> Prepares the estimate of the error of the mesh.
   subroutine weigh_shapes(self, model, now, results)
@@ -120,11 +132,13 @@ contains
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: moved(:)
+    real(rk) :: slopes(size(now%motion%q))
     call store_motion(self%system%numbers, now)
     if (.not. allocated(self%modes%square)) return
     call results%costs%start('estimate', 'time', 'output')
     associate (own => now%timing)
-      call take_modal_error(self%modes, self%scheme%dt, now%motion, own, moved)
+      call find_slopes(model, self%system, when, slopes)
+      call take_modal_error(self%modes, self%scheme%dt, now%motion, slopes, own, moved)
       call note_largest(self%system%numbers, self%modes, now%u, own)
       results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
       ! Histories of bodies that rock or slide do not follow the modes.

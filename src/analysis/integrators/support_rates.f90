@@ -3,14 +3,14 @@
 !> They are central differences of the history over two increments. By Newmark's formulas each
 !> corner of a history would start a swing of the support that no force damps.
 module support_rates
-  use amplitudes, only: amplitude
+  use amplitudes, only: amplitude, slope_at
   use kinds, only: rk
   use problem_definition, only: problem
   use step_loads, only: factor_at, step_time, support
   use step_system, only: dam_system
   implicit none
   private
-  public :: find_support_rates, has_moving_supports
+  public :: find_support_rates, find_slopes, has_moving_supports
 
   !> Times that differ by less, over an increment, are one.
   real(rk), parameter :: roundoff = 1.0e-6_rk
@@ -44,6 +44,25 @@ contains
       end associate
     end do
   end subroutine find_support_rates
+
+  !> Velocities of the supports as their histories have them; zero for those without an amplitude.
+  subroutine find_slopes(model, system, when, v)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(step_time), intent(in) :: when
+    real(rk), intent(out) :: v(:) !< (num_total); zero in other unknowns [m/s]
+    real(rk) :: clock
+    integer :: i
+    v = 0.0_rk
+    do i = 1, size(system%supports)
+      associate (item => system%supports(i))
+        if (item%amplitude == 0) cycle
+        clock = when%now
+        if (model%amplitudes(item%amplitude)%uses_total_time) clock = when%start + when%now
+        v(item%unknown) = item%value*slope_at(model%amplitudes(item%amplitude), clock)
+      end associate
+    end do
+  end subroutine find_slopes
 
   !> Rates of one support. Where its history begins or ends, with the analysis or, in the time of a
   !> step, with the step, they are those of the parabola through the nearest three points; the

@@ -38,6 +38,9 @@ module time_error
     real(rk), allocatable :: inertia(:, :) !< (massive, modes) M times the shapes
     real(rk), allocatable :: square(:) !< (modes) squared circular frequencies [1/s2]
     real(rk), allocatable :: damping(:) !< (modes) 2 zeta omega [1/s]
+    !> (supports, modes) displacement of a mode relative to that by supports at rest, per
+    !> displacement of a support, and force that the support takes from it, per its acceleration
+    real(rk), allocatable :: by_support(:, :), support_mass(:, :)
   end type error_modes
 
 contains
@@ -75,6 +78,8 @@ contains
     modes%own = modes%shape(modes%massive, :)
     allocate (modes%inertia, mold=modes%own)
     allocate (modes%damping(num_modes))
+    allocate (modes%by_support(system%matrix%num_total - system%matrix%num_free, num_modes))
+    allocate (modes%support_mass, mold=modes%by_support)
     allocate (mode(system%matrix%num_total), force(system%matrix%num_total))
     mode = 0.0_rk
     associate (n => system%matrix%num_free)
@@ -82,6 +87,10 @@ contains
         mode(:n) = modes%shape(:, k)
         call multiply(system%matrix, system%mass, mode, force)
         modes%inertia(:, k) = force(modes%massive)
+        modes%support_mass(:, k) = force(n + 1:)
+        call multiply(system%matrix, closed, mode, force)
+        modes%by_support(:, k) = force(n + 1:)/modes%square(k)
+        modes%support_mass(:, k) = modes%support_mass(:, k) - modes%by_support(:, k)
         call system%find_damping_force(mode, force)
         modes%damping(k) = dot_product(mode(:n), force(:n))
       end do
@@ -99,15 +108,19 @@ contains
     end do
   end subroutine point_upwards
 
-  !> The exact motion starts with that of the run.
-  subroutine start_modal_error(modes, moving, own)
+  !> The exact motion starts with that of the run, with supports that jump where they stand after
+  !> their jump.
+  subroutine start_modal_error(modes, moving, placed, own)
     type(error_modes), intent(in) :: modes
     type(motion), intent(in) :: moving !< at the start of the step
+    real(rk), intent(in) :: placed(:) !< (num_total) its unknowns after the jump [m]
     type(modal_error), intent(out) :: own
-    own%exact = displacement_of(modes, moving)
+    own%exact = displacement_of(modes, placed)
     allocate (own%rate, own%drive, own%error, mold=own%exact)
     own%error = 0.0_rk
-    call drive_modes(modes, moving, own%exact, own%rate, own%drive)
+    own%carried = matmul(at_supports(modes, placed), modes%support_mass)
+    own%carried_rate = matmul(at_supports(modes, moving%v), modes%support_mass)
+    call drive_modes(modes, moving, displacement_of(modes, moving%q), own%rate, own%drive)
   end subroutine start_modal_error
 
   !> The motion of the structure, whose modes are softer than those of the mesh, starts in
@@ -123,13 +136,22 @@ contains
     allocate (own%mesh_at_most(size(stiffening)), source=0.0_rk)
   end subroutine start_mesh_error
 
-  !> Modal displacements.
-  function displacement_of(modes, moving) result(q)
+  !> Modal displacements relative to those that the supports cause at rest.
+  function displacement_of(modes, unknowns) result(q)
     type(error_modes), intent(in) :: modes
-    type(motion), intent(in) :: moving
+    real(rk), intent(in) :: unknowns(:) !< (num_total) [m]
     real(rk) :: q(size(modes%square))
-    q = matmul(moving%q(modes%massive), modes%inertia)
+    q = matmul(unknowns(modes%massive), modes%inertia) &
+        + matmul(at_supports(modes, unknowns), modes%by_support)
   end function displacement_of
+
+  !> The part of a vector in the supports.
+  pure function at_supports(modes, vector) result(part)
+    type(error_modes), intent(in) :: modes
+    real(rk), intent(in) :: vector(:) !< (num_total)
+    real(rk) :: part(size(modes%by_support, 1))
+    part = vector(size(modes%shape, 1) + 1:)
+  end function at_supports
 
   !> Modal velocities, and the forces that drive the modes: those of the balance at the end of the
   !> increment, with the elastic and the damping force of the mode added.
@@ -140,7 +162,8 @@ contains
     real(rk), intent(out) :: rate(:), drive(:)
     real(rk) :: force(size(modes%massive))
     associate (rows => modes%massive)
-      rate = matmul(moving%momentum(rows), modes%own)
+      rate = matmul(moving%momentum(rows), modes%own) &
+             - matmul(at_supports(modes, moving%v), modes%support_mass)
       force = moving%external(rows) - moving%internal(rows) - moving%contact(rows) &
               - moving%viscous(rows)
     end associate
@@ -148,29 +171,53 @@ contains
   end subroutine drive_modes
 
   !> The exact motion over an increment in which the forces change linearly.
-  subroutine take_modal_error(modes, dt, after, own, moved)
+  subroutine take_modal_error(modes, dt, after, slopes, own, moved)
     type(error_modes), intent(in) :: modes
     real(rk), intent(in) :: dt !< [s]
     type(motion), intent(in) :: after !< at the end of the increment
+    real(rk), intent(in) :: slopes(:) !< (num_total) of the histories of supports then [m/s]
     type(modal_error), intent(inout) :: own
     real(rk), allocatable, intent(out) :: moved(:) !< (modes) displacement of the increment
     real(rk), dimension(size(modes%square)) :: q, rate, drive
+    real(rk) :: p(2, size(modes%square))
     integer :: k
-    q = displacement_of(modes, after)
+    q = displacement_of(modes, after%q)
     moved = q - own%exact - own%error
     call drive_modes(modes, after, q, rate, drive)
+    call carry_modes(modes, dt, after%q, slopes, own, p)
+    p(1, :) = own%drive - p(1, :)
+    p(2, :) = drive - p(2, :)
     do k = 1, size(q)
-      call advance_oscillator(modes%square(k), modes%damping(k), dt, [own%drive(k), drive(k)], &
+      call advance_oscillator(modes%square(k), modes%damping(k), dt, p(:, k), &
                               own%exact(k), own%rate(k))
       if (.not. allocated(own%softer)) cycle
       call advance_oscillator(modes%square(k) - own%stiffening(k), modes%damping(k), dt, &
-                              [own%drive(k), drive(k)], own%softer(k), own%softer_rate(k))
+                              p(:, k), own%softer(k), own%softer_rate(k))
     end do
     own%drive = drive
     own%error = q - own%exact
-    own%motion = max(own%motion, norm2(q))
+    own%motion = max(own%motion, norm2(q - matmul(at_supports(modes, after%q), modes%by_support)))
     own%most = max(own%most, norm2(own%error))
   end subroutine take_modal_error
+
+  !> The inertia of moving supports, per mass: the linear course with the velocity and the
+  !> displacement that they gain in the increment.
+  subroutine carry_modes(modes, dt, unknowns, slopes, own, force)
+    type(error_modes), intent(in) :: modes
+    real(rk), intent(in) :: dt !< [s]
+    real(rk), intent(in) :: unknowns(:), slopes(:) !< (num_total) at the end [m], [m/s]
+    type(modal_error), intent(inout) :: own
+    real(rk), intent(out) :: force(:, :) !< (start and end, modes)
+    real(rk), dimension(size(modes%square)) :: place, rate, gain, way
+    place = matmul(at_supports(modes, unknowns), modes%support_mass)
+    rate = matmul(at_supports(modes, slopes), modes%support_mass)
+    gain = (rate - own%carried_rate)/dt
+    way = (place - own%carried - dt*own%carried_rate)/dt**2
+    force(1, :) = 6.0_rk*way - 2.0_rk*gain
+    force(2, :) = 4.0_rk*gain - 6.0_rk*way
+    own%carried = place
+    own%carried_rate = rate
+  end subroutine carry_modes
 
   !> Sums of the modal forces that the joints have lost by opening and sliding, and of those that
   !> they would have closed (theory.md, 14.4).

@@ -12,6 +12,7 @@ module modal_errors
   type :: modal_error
     real(rk), allocatable :: exact(:), rate(:) !< (modes) displacement and velocity now
     real(rk), allocatable :: drive(:) !< (modes) force per mass now
+    real(rk), allocatable :: carried(:), carried_rate(:) !< (modes) by moving supports
     real(rk), allocatable :: error(:) !< (modes) displacement of the run less the exact one
     real(rk) :: most = 0.0_rk !< largest norm of the errors so far
     real(rk) :: motion = 0.0_rk !< largest norm of the modal displacements so far
@@ -42,6 +43,8 @@ contains
     call file%put('exact', timing%exact)
     call file%put('rate', timing%rate)
     call file%put('drive', timing%drive)
+    call file%put('carried', timing%carried)
+    call file%put('carried_rate', timing%carried_rate)
     call file%put('error', timing%error)
     call file%put('most', timing%most)
     call file%put('motion', timing%motion)
@@ -68,6 +71,8 @@ contains
     call file%get('exact', timing%exact)
     call file%get('rate', timing%rate)
     call file%get('drive', timing%drive)
+    call file%get('carried', timing%carried)
+    call file%get('carried_rate', timing%carried_rate)
     call file%get('error', timing%error)
     call file%get('most', timing%most)
     call file%get('motion', timing%motion)

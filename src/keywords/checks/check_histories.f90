@@ -1,7 +1,7 @@
 !> Warns of histories that do not act as they stand: over before the step, zero, too fine for its
 !> increments, in units of acceleration on loads.
 module check_histories
-  use amplitudes, only: amplitude, amplitude_at
+  use amplitudes, only: amplitude, amplitude_at, spacing_of
   use check_idle_steps, only: first_displacement
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
@@ -17,6 +17,7 @@ module check_histories
 
   real(rk), parameter :: round_off = 1.0e-9_rk
   real(rk), parameter :: seen_share = 0.9_rk !< of the peak: less is a warning
+  real(rk), parameter :: rounded = 0.01_rk !< of a spacing, by times with few digits
   integer, parameter :: most_samples = 10000000
 
 contains
@@ -26,8 +27,9 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: step(size(model%cards))
-    integer :: i, a
+    integer :: i, a, coarse
     step = steps_of_cards(model%cards)
+    coarse = 0
     do i = 1, size(step)
       if (is_keyword(model%cards(i), 'STEP')) cycle ! RAMP or STEP
       if (.not. model%cards(i)%has('AMPLITUDE')) cycle
@@ -42,7 +44,8 @@ contains
       call find_amplitude(model%cards(i), model, faults, a)
       if (a == 0) cycle
       call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
-      call warn_of_increments(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
+      call warn_of_increments(model%cards(i), model, step(i), model%problem%amplitudes(a), coarse, &
+                              faults)
       if (.not. is_keyword(model%cards(i), 'BASE MOTION')) then
         call warn_of_unit(model%cards(i), model, a, faults)
       end if
@@ -94,12 +97,13 @@ contains
   end function span_of_step
 
   !> A peak between the increments does not act. Increments are taken to grow as they do where each
-  !> converges quickly.
-  subroutine warn_of_increments(this, model, s, record, faults)
+  !> converges quickly. One warning in a step says that they grow beyond the spacing of a motion.
+  subroutine warn_of_increments(this, model, s, record, coarse, faults)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
     type(amplitude), intent(in) :: record
+    integer, intent(inout) :: coarse !< the last step that was warned of, 0 for none
     type(diagnostic_list), intent(inout) :: faults
     type(increment_control) :: control
     character(:), allocatable :: sizes
@@ -121,13 +125,33 @@ contains
       seen = max(seen, abs(amplitude_at(record, span(1) + t)))
       call control%accept(1)
     end do
-    if (seen >= seen_share*peak) return
+    if (seen >= seen_share*peak) then
+      if (coarse == s .or. control%finest > 0.0_rk) return
+      if (smallest > spacing_of(record)*(1.0_rk + rounded)) return
+      if (largest <= spacing_of(record)*(1.0_rk + rounded)) return
+      if (.not. model%problem%steps(s)%procedure%has_inertia) return
+      if (.not. (is_keyword(this, 'BASE MOTION') .or. is_keyword(this, 'BOUNDARY'))) return
+      coarse = s
+      call warn_of_growth(this, largest, spacing_of(record), faults)
+      return
+    end if
     sizes = as_text(smallest)
     if (largest > smallest*(1.0_rk + round_off)) sizes = sizes//' to '//as_text(largest)
     call this%warn(faults, 'increments of '//sizes//" s miss the peak of the history '"// &
                    this%text('AMPLITUDE')//"': "//as_text(seen)//' at their ends, '// &
                    as_text(peak)//' in the history', 'increments that end near the peak')
   end subroutine warn_of_increments
+
+  !> Increments that grow until they leave out values of a motion.
+  subroutine warn_of_growth(this, largest, spacing, faults)
+    type(card), intent(in) :: this
+    real(rk), intent(in) :: largest, spacing !< increment, and time between values [s]
+    type(diagnostic_list), intent(inout) :: faults
+    call this%warn(faults, 'increments grow to '//as_text(largest)//' s, beyond the '// &
+                   as_text(spacing)//" s between values of the history '"// &
+                   this%text('AMPLITUDE')//"': they leave out values", 'a largest increment of '// &
+                   as_text(spacing)//' s or less, DIRECT, or ACCURACY of *CONTROLS')
+  end subroutine warn_of_growth
 
   !> The values of a record of acceleration were turned into m/s2.
   subroutine warn_of_unit(this, model, a, faults)

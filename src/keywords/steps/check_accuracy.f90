@@ -1,6 +1,7 @@
 !> *CONTROLS, ACCURACY at the end of its step: where it has no meaning, and between which sizes
 !> increments may vary.
 module check_accuracy
+  use amplitudes, only: spacing_of
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
@@ -81,23 +82,18 @@ contains
     end associate
   end function is_given
 
-  !> The shortest sampling interval of the amplitudes of the step: longer increments would miss
-  !> values. Half the time from the value before to the value after: a jump is no sampling.
+  !> The shortest sampling interval of the amplitudes of the step.
   pure real(rk) function shortest_sample(model) result(shortest)
     type(draft), intent(in) :: model
     type(step_load), allocatable :: loads(:)
     logical :: is_used(model%num_amplitudes)
-    integer :: i, n
+    integer :: i
     shortest = 0.5_rk*huge(1.0_rk) ! the caller adds round-off
     loads = model%active_loads%loads_of_step()
     is_used = model%supports%follows(size(is_used)) .or. model%point_forces%follows(size(is_used))
     is_used(pack(loads%amplitude, loads%amplitude > 0)) = .true.
     do i = 1, size(is_used)
-      if (.not. is_used(i)) cycle
-      associate (time => model%problem%amplitudes(i)%time)
-        n = size(time)
-        if (n > 2) shortest = min(shortest, 0.5_rk*minval(time(3:) - time(:n - 2)))
-      end associate
+      if (is_used(i)) shortest = min(shortest, spacing_of(model%problem%amplitudes(i)))
     end do
   end function shortest_sample
 end module check_accuracy

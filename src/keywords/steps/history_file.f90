@@ -15,6 +15,10 @@ module history_file
 
   character(*), parameter :: separators = ' ,;'//achar(9)//achar(13)
   integer, parameter :: num_at2_headers = 4 !< lines above the values of a PEER file
+  integer, parameter :: num_looked_at = 2 !< lines: in UTF-16 an empty first one has no zero byte
+  character(*), parameter :: words_of_at2 = ' NPTS DT ' !< in the fourth line, beside numbers
+  character(*), parameter :: words_of_seconds = ' S S. SEC SEC. SECS SECOND SECONDS '
+  character(*), parameter :: expected_numbers = "'NPTS= <points>, DT= <seconds>' in the fourth line"
 
   !> Numbers of a file in their order.
   type :: number_file
@@ -54,7 +58,7 @@ contains
         if (status /= 0 .and. len(line) == 0) exit
         number = number + 1
         if (number == 1) line = line(first_letter(line):)
-        if (number == 1 .and. index(line, achar(0)) > 0) reason = why_no_text(line)
+        if (number <= num_looked_at .and. index(line, achar(0)) > 0) reason = why_no_text(line)
         if (reason /= '') exit
         if (number > num_headers) call add_line(line, number, spot, faults, numbers, used)
         if (status /= 0) exit
@@ -165,10 +169,10 @@ contains
     real(rk), intent(out) :: dt !< [s]
     type(record_header), intent(out) :: header
     character(:), allocatable :: line
-    integer :: unit, status, i
+    integer :: unit, status, i, odd(2)
     num_points = 0
     dt = 0.0_rk
-    header = record_header('', '', '')
+    header = record_header('', '', '', '')
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
     if (status /= 0) return ! reported before
     do i = 1, num_at2_headers
@@ -176,36 +180,51 @@ contains
       call header%note_line(line)
     end do
     close (unit)
-    call take_numbers(upper_case(line), num_points, dt)
-    if (num_points > 0 .and. dt > 0.0_rk) return
-    call faults%add(severity_error, &
-                    spot_in_file(path, num_at2_headers, 1, len(line), line, spot), &
-                    'the file is not a PEER record', &
-                    "'NPTS= <points>, DT= <seconds>' in the fourth line")
+    call take_numbers(upper_case(line), num_points, dt, odd)
+    if (num_points > 0 .and. odd(1) > 0) then
+      call faults%add(severity_error, &
+                      spot_in_file(path, num_at2_headers, odd(1), odd(2), line, spot), &
+                      "found '"//line(odd(1):odd(2))//"' beside the number of points and the "// &
+                      'time between them', expected_numbers//', with no unit or SEC')
+    else if (.not. (num_points > 0 .and. dt > 0.0_rk)) then
+      call faults%add(severity_error, &
+                      spot_in_file(path, num_at2_headers, 1, len(line), line, spot), &
+                      'the file is not a PEER record', expected_numbers)
+    end if
   end subroutine read_at2_header
 
-  !> The first integer and the number after it.
-  pure subroutine take_numbers(line, num_points, dt)
-    character(*), intent(in) :: line
+  !> The first integer and the number after it, in a line that names DT. Words stand beside the
+  !> numbers up to SEC; one that is none of those known may be another unit.
+  pure subroutine take_numbers(line, num_points, dt, odd)
+    character(*), intent(in) :: line !< in upper case
     integer, intent(inout) :: num_points
-    real(rk), intent(inout) :: dt
+    real(rk), intent(inout) :: dt !< [s]
+    integer, intent(out) :: odd(2) !< first and last letter of a word that is not known; 0 for none
     integer :: first, last, number
-    real(rk) :: value
-    logical :: is_number
+    real(rk) :: value, found
+    logical :: is_number, names_dt
     last = 0
+    odd = 0
+    found = 0.0_rk
+    names_dt = .false.
     do
-      first = verify(line(last + 1:), separators//'=') + last
-      if (first == last) return
-      last = scan(line(first:), separators//'=') + first - 2
+      first = verify(line(last + 1:), separators//'=():') + last
+      if (first == last) exit
+      last = scan(line(first:), separators//'=():') + first - 2
       if (last < first) last = len(line)
-      if (num_points == 0) then
+      call parse_real(line(first:last), value, is_number)
+      if (is_number .and. num_points == 0) then
         call parse_integer(line(first:last), number, is_number)
         if (is_number) num_points = number
-      else
-        call parse_real(line(first:last), value, is_number)
-        if (is_number) dt = value
-        if (is_number) return
+      else if (is_number .and. abs(found) <= 0.0_rk) then
+        found = value
       end if
+      if (is_number) cycle
+      names_dt = names_dt .or. line(first:last) == 'DT'
+      if (index(words_of_at2, ' '//line(first:last)//' ') > 0) cycle
+      if (index(words_of_seconds, ' '//line(first:last)//' ') == 0) odd = [first, last]
+      if (odd(1) > 0 .or. (found > 0.0_rk .and. names_dt)) exit
     end do
+    if (names_dt) dt = found
   end subroutine take_numbers
 end module history_file

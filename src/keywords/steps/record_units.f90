@@ -26,6 +26,7 @@ module record_units
   !> Words between UNIT or UNITS and the unit; words of the line that says what a record is.
   character(*), parameter :: fillers = ' OF IN IS ARE THE '
   character(*), parameter :: words_of_headings = ' TIME SERIES HISTORY IN '
+  character(*), parameter :: words_of_records = ' SERIES HISTORY '
   real(rk), parameter :: same_factor = 0.01_rk !< relative: 9.8, 9.80665 and 9.81 are g
 
   !> What the header of an AT2 file says of its values, in upper case.
@@ -33,8 +34,12 @@ module record_units
     character(:), allocatable :: unit !< 'G', 'M/S2', 'CM/S2', '' where none of them is named
     character(:), allocatable :: unknown !< word in the place of a unit, '' for none
     character(:), allocatable :: quantity !< 'ACCELERATION', 'VELOCITY', ..; '' where not named
+    character(:), allocatable :: other !< a second unit, '' for none
+    !> The unit stands in a line that says what the record is; others, as titles, do not count
+    logical :: is_of_record = .false.
   contains
-    procedure :: note_line, is_no_acceleration
+    procedure :: note_line, is_no_acceleration, names_two
+    procedure, private :: note_unit
   end type record_header
 
 contains
@@ -60,31 +65,61 @@ contains
   end function factor_beside_scale
 
   !> Takes what a line says: '.. TIME SERIES IN UNITS OF G', 'units: cm/sec2'. The first unit
-  !> counts, and acceleration before velocity, which may belong to a station.
+  !> of a line counts, and acceleration before velocity, which may belong to a station.
   pure subroutine note_line(self, line)
     class(record_header), intent(inout) :: self
     character(*), intent(in) :: line
-    character(:), allocatable :: word, quantity, unknown
-    logical :: is_named, is_heading
+    character(:), allocatable :: word, quantity, unit, unknown
+    logical :: is_named, is_heading, is_of_record
     integer :: last
     quantity = ''
+    unit = ''
     unknown = ''
     is_named = .false.
     is_heading = .false.
+    is_of_record = .false.
     last = 0
     do
       call take_word(line, last, word)
       if (word == '') exit
       if (index(quantity, 'ACCEL') == 0 .and. names_quantity(word)) quantity = word
       is_heading = is_heading .or. index(words_of_headings, ' '//word//' ') > 0
-      if (self%unit == '') self%unit = unit_of_word(word, is_named)
+      is_of_record = is_of_record .or. names_quantity(word) &
+                     .or. index(words_of_records, ' '//word//' ') > 0
+      if (unit == '') unit = unit_of_word(word, is_named)
       if (is_named .and. unknown == '' .and. index(fillers, ' '//word//' ') == 0) unknown = word
       is_named = is_named .or. index(word, 'UNIT') == 1
     end do
-    if (self%unit == '' .and. self%unknown == '') self%unknown = unknown
+    if (unit /= '') unknown = ''
+    if (unit//unknown /= '') call self%note_unit(unit, unknown, is_of_record)
     if (self%quantity == '' .and. (is_heading .or. is_named)) self%quantity = quantity
     if (index(quantity, 'ACCEL') == 1) self%quantity = quantity
   end subroutine note_line
+
+  !> Takes the unit of a line. A line that says what the record is comes before others, and a unit
+  !> that is known before another word.
+  pure subroutine note_unit(self, unit, unknown, is_of_record)
+    class(record_header), intent(inout) :: self
+    character(*), intent(in) :: unit, unknown !< of the line; one of them is ''
+    logical, intent(in) :: is_of_record
+    logical :: is_first
+    if (self%is_of_record .and. .not. is_of_record) return
+    is_first = self%unit//self%unknown == '' .or. (is_of_record .and. .not. self%is_of_record)
+    if (is_first .or. (self%unit == '' .and. unit /= '')) then
+      self%unit = unit
+      self%unknown = unknown
+      self%other = ''
+      self%is_of_record = is_of_record
+    else if (unit /= '' .and. unit /= self%unit) then
+      self%other = unit
+    end if
+  end subroutine note_unit
+
+  !> Whether the header names two units, neither of which comes before the other.
+  pure logical function names_two(self)
+    class(record_header), intent(in) :: self
+    names_two = self%other /= ''
+  end function names_two
 
   !> Whether a word is that of a motion.
   pure logical function names_quantity(word)
@@ -134,6 +169,8 @@ contains
     if (header%is_no_acceleration()) then
       call this%fault_parameter(faults, 'INPUT', 'the header of the file says '// &
                                 header%quantity, 'a record of acceleration')
+    else if (header%names_two()) then
+      call choose_unit(this, header, faults)
     else if (header%unit == '' .and. header%unknown /= '') then
       call take_unknown_unit(this, header%unknown, faults)
     else if (.not. this%has('UNIT')) then
@@ -143,6 +180,17 @@ contains
                                 header%unit, 'no UNIT, or UNIT='//header%unit)
     end if
   end subroutine settle_unit
+
+  !> Of two units of a header UNIT says which is that of the values.
+  subroutine choose_unit(this, header, faults)
+    type(card), intent(in) :: this
+    type(record_header), intent(in) :: header
+    type(diagnostic_list), intent(inout) :: faults
+    if (this%word('UNIT') == header%unit .or. this%word('UNIT') == header%other) return
+    call this%fault_parameter(faults, trim(merge('UNIT ', 'INPUT', this%has('UNIT'))), &
+                              'the header of the file names two units, '//header%unit//' and '// &
+                              header%other, 'UNIT='//header%unit//' or UNIT='//header%other)
+  end subroutine choose_unit
 
   !> A unit that is none of those known: SCALE alone can convert it.
   subroutine take_unknown_unit(this, unknown, faults)

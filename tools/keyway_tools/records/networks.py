@@ -18,6 +18,9 @@ from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 AT2_COUNT = re.compile(r"NPTS\s*=\s*(\d+).*?DT\s*=\s*([0-9.eE+-]+)", re.IGNORECASE)
 AT2_OLD_COUNT = re.compile(r"^\s*(\d+)\s+([0-9.eE+-]+)\s+NPTS\s*,\s*DT", re.IGNORECASE)
+AT2_BETWEEN = re.compile(r"[\s,;=():]+")
+AT2_SECONDS = re.compile(r"s\.?|secs?\.?|seconds?", re.IGNORECASE)
+AT2_KIND = re.compile(r"\b(?:accel|veloc|displ)|\b(?:time series|history)\b", re.IGNORECASE)
 COSMOS_DATA = re.compile(r"^\s*(\d+)\s+(\w+)\s+pts.*?units?\s*=\s*([^,(]+)", re.IGNORECASE)
 COSMOS_REALS = re.compile(r"^\s*(\d+)\s+Real-header values", re.IGNORECASE)
 CSMIP_DATA = re.compile(
@@ -80,14 +83,35 @@ def read_at2(path: Path, lines: list[str], unit: str | None) -> list[Record]:
     found = AT2_COUNT.search(lines[3]) or AT2_OLD_COUNT.search(lines[3])
     if not found:
         raise RecordError(f"{path}:4: found '{lines[3].strip()[:60]}'; expected NPTS= and DT=")
+    _refuse_other_words(path, lines[3])
     if re.search(r"velocity|displacement", lines[2], re.IGNORECASE):
         raise RecordError(f"{path}:3: '{lines[2].strip()[:60]}'; expected an acceleration")
     values = numbers_in(lines[4:], int(found[1]), None, path)
-    unit = choose_unit(path, unit_named_in("\n".join(lines[:3])), unit, np.abs(values).max())
+    unit = choose_unit(path, _unit_of_at2(lines[:3]), unit, np.abs(values).max())
     name = lines[1].split(",")[-1].strip()
     if "," not in lines[1] or len(name) > LONGEST_NAME:
         name = path.stem
     return [Record(FACTORS[unit] * values, _interval(path, found[2]), name, path, "PEER AT2", unit)]
+
+
+def _refuse_other_words(path: Path, line: str) -> None:
+    """Error: the fourth line of a PEER file names another unit than seconds."""
+    names_interval = False
+    for word in AT2_BETWEEN.split(line.strip()):
+        if not word or NUMBER.fullmatch(word) or word.upper() == "NPTS":
+            continue
+        if word.upper() == "DT":
+            names_interval = True
+        elif not AT2_SECONDS.fullmatch(word):
+            raise RecordError(f"{path}:4: found '{word}'; expected NPTS= and DT= in seconds (SEC)")
+        elif names_interval:
+            return  # what follows does not belong to DT
+
+
+def _unit_of_at2(header: list[str]) -> str | None:
+    """The unit of a header: that of the lines that say what the record is, else that of all."""
+    own = [line for line in header if AT2_KIND.search(line)]
+    return unit_named_in("\n".join(own)) or unit_named_in("\n".join(header))
 
 
 def read_cosmos(path: Path, lines: list[str], unit: str | None) -> list[Record]:
