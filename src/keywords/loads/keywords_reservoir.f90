@@ -66,7 +66,7 @@ contains
     end if
     if (this%real('LEVEL') <= this%real('BED')) then
       call this%fault_parameter(faults, 'LEVEL', "found '"//this%text('LEVEL')//"'", &
-                                'a level above BED, '//this%text('BED')//' m')
+                                'a level above BED, '//this%text('BED'))
       return
     end if
     lake%kind = 'reservoir'
@@ -82,7 +82,7 @@ contains
     if (wetted_area(lake, model%problem%mesh) <= 0.0_rk) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
                                 'a surface with faces between BED, '//this%text('BED')// &
-                                ' m, and LEVEL, '//this%text('LEVEL')//' m')
+                                ', and LEVEL, '//this%text('LEVEL'))
       return
     end if
     if (model%problem%upstream_surface == 0) model%problem%upstream_surface = found
