@@ -192,6 +192,8 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
         (["--keywords", "STATC"], 2, "stderr", "did you mean '*STATIC'?"),
         (["--fields"], 0, "stdout", "OPENING"),
         (["--fields", "traction"], 0, "stdout", "TN,T1,T2"),
+        (["--fields", "FOO"], 2, "stderr", "'FOO'; expected a name of keyway --fields"),
+        (["--fields", "OPENIN"], 2, "stderr", "did you mean 'OPENING'?"),
         (["--chekc", "a.inp"], 2, "stderr", "did you mean '--check'?"),
         (["--umat", "lib.so", "a.inp"], 2, "stderr", "cannot load the UMAT"),
         (["--continue", "nowhere.inp"], 2, "stderr", "cannot read 'nowhere.inp'"),
@@ -205,6 +207,43 @@ def test_options(arguments, code, stream, text, program_path: Path, tmp_path: Pa
     done = run(program_path, tmp_path, *arguments)
     assert done.returncode == code
     assert text in getattr(done, stream)
+
+
+@pytest.mark.parametrize("line", ["\x1a", "\x0c\n", " \x1a\r\n"])
+def test_a_mark_of_old_systems_has_no_effect(line, program_path: Path, tmp_path: Path) -> None:
+    (tmp_path / "job.inp").write_bytes((BLOCK + line).encode())
+    done = run(program_path, tmp_path, "--check", "job.inp")
+    assert done.returncode == 0
+    at = BLOCK.count("\n") + 1
+    assert done.stderr.startswith(f"job.inp:{at}: warning: a line of control characters alone")
+
+
+@pytest.mark.parametrize(
+    ("word", "hidden", "letter"),
+    [
+        ("*STATIC", "*STATIC\u00a0", "a no-break space (U+00A0)"),
+        ("20.D9", "\u00a020.D9", "a no-break space (U+00A0)"),
+        ("MATERIAL=ROCK", "MATERIAL=ROCK\u200b", "a letter without width (U+200B)"),
+        ("*DENSITY", "*DEN\x0cSITY", "a control character (U+000C)"),
+    ],
+)
+def test_invisible_letters_are_named(
+    word, hidden, letter, program_path: Path, tmp_path: Path
+) -> None:
+    deck = BLOCK.replace(word, hidden, 1)
+    (tmp_path / "job.inp").write_text(deck, encoding="utf-8")
+    done = run(program_path, tmp_path, "--check", "job.inp")
+    assert done.returncode == 2
+    assert f"; the word has {letter}" in done.stderr
+
+
+def test_numbers_of_three_digit_exponents_keep_their_e(program_path: Path, tmp_path: Path) -> None:
+    test = "*MATERIAL, NAME=A\n*ELASTIC\n{}, 0.2\n*MATERIAL TEST, NAME=T\n1e-4, 1\n"
+    for young, stress in (("25e9", "2.50000E+06"), ("25e148", "2.50000E+145")):
+        (tmp_path / "job.inp").write_text(test.format(young))
+        row = run(program_path, tmp_path, "--material", "job.inp").stderr.splitlines()[1]
+        start = f"T                    S11 {stress:>12}  1.000E-04  0.00000E+00  0.000E+00 "
+        assert row.startswith(start)
 
 
 @pytest.mark.parametrize("folder", ["job.inp", "job.inp/results"])

@@ -44,7 +44,14 @@ from keyway_tools.deck_text import mesh_deck
 from keyway_tools.joint_points import name_joint_points
 from keyway_tools.mesh_data import BrickMesh
 from keyway_tools.mesh_quality import find_faults, report
-from keyway_tools.option_types import above_zero, count, count_from_zero, finite, from_zero
+from keyway_tools.option_types import (
+    above_zero,
+    count,
+    count_from_zero,
+    deck_path,
+    finite,
+    from_zero,
+)
 from keyway_tools.records.for_deck import motion_files
 from keyway_tools.records.record import FACTORS
 from keyway_tools.surface_fit import fit_report
@@ -213,7 +220,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "-o", "--output", type=Path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)"
+        "-o", "--output", type=deck_path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)"
     )
     parser.add_argument("--picture", action="store_true", help="draw the mesh to NAME_mesh.png")
     add_shape_options(parser)

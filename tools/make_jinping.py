@@ -18,7 +18,7 @@ import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.command import command
 from keyway_tools.jinping.concrete import LAWS, RECOVERIES
 from keyway_tools.jinping.decks import DURATION, FULL, INCREMENT, SMALL, JinpingDeck, write_deck
-from keyway_tools.option_types import above_zero, count
+from keyway_tools.option_types import above_zero, count, deck_path
 
 INPUT = Path(__file__).resolve().parents[1] / "input"
 KEPT = {
@@ -34,7 +34,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("deck", type=Path, nargs="?", help="deck to write (all of input/jinping)")
+    add("deck", type=deck_path, nargs="?", help="deck to write (all of input/jinping)")
     add("--unknowns", type=count, help=f"at least ({FULL}; {SMALL} is a size for trials)")
     add("--law", choices=LAWS, help="of the concrete (table1)")
     add("--recovery", choices=RECOVERIES, help="of stiffness in compression (ENERGY)")

@@ -59,6 +59,7 @@ set(sources
   system/undo_journal.f90
   system/undo_pages.c
   system/undo_restore.c
+  text/invisible_letters.f90
   text/nearest_words.f90
   text/number_ranges.f90
   text/parse_text.f90

@@ -2,7 +2,7 @@
 module deck_source
   use deck_file, only: first_letter, load_text, path_of_named
   use deck_words, only: is_blank, next_word, split_parameter
-  use diagnostics, only: diagnostic_list, place, severity_error
+  use diagnostics, only: diagnostic_list, place, severity_error, severity_ignored
   use file_identity, only: is_same_file
   use parse_text, only: upper_case, without_blanks
   use write_text, only: as_text
@@ -96,6 +96,10 @@ contains
           call read_file(path_of_named(path, name), spot, [parents, file], source, faults)
         end if
         i = i + num_heads
+      else if (is_stray(source, lines(i))) then
+        call faults%add(severity_ignored, spot_in_source(source, lines(i), 1, 0, ''), &
+                        'a line of control characters alone (Ctrl-Z or form feed) has no effect')
+        i = i + 1
       else
         call append_line(source, lines(i))
         i = i + 1
@@ -196,6 +200,15 @@ contains
     counts = len(line) > 0
     if (len(line) > 1) counts = line(1:2) /= '**'
   end function counts
+
+  !> Whether the line has nothing but marks of old systems: Ctrl-Z for the end of a file, form feed
+  !> for a new page.
+  pure logical function is_stray(source, line)
+    type(source_text), intent(in) :: source
+    type(source_line), intent(in) :: line
+    is_stray = verify(source%files(line%file)%text(line%first:line%last), &
+                      achar(26)//achar(12)//' '//achar(9)//return) == 0
+  end function is_stray
 
   !> Whether the line is *INCLUDE.
   pure logical function is_include(source, line)

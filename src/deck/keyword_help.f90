@@ -55,7 +55,7 @@ contains
       text = text//page(specs(i))
     end do
     if (is_known) return
-    text = "unknown keyword '*"//wanted//"'"
+    text = "unknown keyword '*"//wanted//"'; expected a name of keyway --keywords"
     nearest = nearest_word(wanted, names)
     if (len(nearest) > 0) text = text//"; did you mean '*"//nearest//"'?"
   end subroutine describe_keyword

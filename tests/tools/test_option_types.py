@@ -5,9 +5,17 @@ import make_jinping
 import make_motion
 import make_temperature
 import pytest
-from keyway_tools.option_types import above_zero, count, count_from_zero, finite, from_zero
+from keyway_tools.option_types import (
+    above_zero,
+    count,
+    count_from_zero,
+    deck_path,
+    finite,
+    from_zero,
+)
 
 BAD = [
+    (make_dam, "-o .", ".: expected the name of a deck"),
     (make_dam, "--joints -1", "-1: expected a whole number, 0 or more"),
     (make_dam, "--unknowns -3", "-3: expected a whole number, 1 or more"),
     (make_dam, "--friction nan", "nan: expected a number of 0 or more"),
@@ -63,3 +71,10 @@ def test_temperatures_of_a_deck_with_parts(tmp_path, capsys):
     told = capsys.readouterr().err
     assert "has parts and instances (*PART); expected *NODE and *ELEMENT outside of parts" in told
     assert "refined" not in told
+
+
+@pytest.mark.parametrize("name", ["my/d am", "my/d am.inp", "dam.v2", "DAM.INP"])
+def test_decks_end_in_inp(name):
+    path = deck_path(name)
+    assert path.suffix.lower() == ".inp"
+    assert str(path) in (name, f"{name}.inp")

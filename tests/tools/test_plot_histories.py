@@ -182,6 +182,16 @@ def test_openings_have_the_name_of_the_joint(folder):
     assert "Opening of joint FUGE Ü 1" in {plot["title"] for plot in plots(results)}
 
 
+def test_displacements_have_the_name_of_the_set(folder):
+    write_nodes(folder, "K__RPER_CREST", {40: 0.01})
+    with h5py.File(folder / "job.h5", "a") as file:
+        file["sets/nodes/KÖRPER CREST"] = np.array([40])
+    results = SiResults(folder)
+    assert "KÖRPER CREST, node 40" in words_of(plot_nodes, results, folder)
+    titles = {plot["title"] for plot in plots(results)}
+    assert "Displacements of KÖRPER CREST, relative to the base" in titles
+
+
 def test_joints_without_openings_are_left_out(folder):
     """*JOINT PRINT of tractions alone."""
     write_openings(folder, "J1", [(1, 0.1 * k, 1e5) for k in range(4)], "tn")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import h5py
 import matplotlib.image
 import numpy as np
@@ -20,22 +22,36 @@ LEVEL = 80.0  # [m] the upper lift begins
 
 @pytest.fixture
 def staged(tmp_path):
-    """A dam whose upper lift is absent in the first of two steps; its lower joints are grouted."""
+    """A dam whose upper lift is absent in the first of two steps; its joints are bonded."""
+    return write_stages(tmp_path, 1.0)
+
+
+def write_stages(folder, scale):
+    """Its results; the heights are scaled."""
     mesh = build_arch_dam(
         ArchShape(), DamOptions(num_arc=14, num_height=6, num_thick=1, num_bottom=2, rock=None)
     )
-    write_results(tmp_path, mesh)
-    with h5py.File(tmp_path / "job.h5", "a") as file:
+    mesh.x[:, 2] *= scale
+    write_results(folder, mesh)
+    with h5py.File(folder / "job.h5", "a") as file:
         count = len(file["mesh/element_id"])
         upper = np.zeros(count, dtype=bool)
-        upper[: len(mesh.bricks)] = mesh.x[mesh.bricks, 2].mean(axis=1) > LEVEL
+        upper[: len(mesh.bricks)] = mesh.x[mesh.bricks, 2].mean(axis=1) > scale * LEVEL
         file["steps/0001/stage"] = np.where(upper, 0, 1)
         file["steps/0002/stage"] = np.where(upper, 2, 1)
         for group in file["steps/0001/increments"].values():
             for name in group["joints"]:
                 z = file[f"joints/{name}/x"][:, 2]
-                group[f"joints/{name}/grouted"] = np.where(z > LEVEL, 0, 2)
-    return tmp_path
+                group[f"joints/{name}/grouted"] = np.where(z > scale * LEVEL, 0, 2)
+    return folder
+
+
+def wait_for_grout(folder):
+    """The upper points of the joints wait for their grout in the first step."""
+    with h5py.File(folder / "job.h5", "a") as file:
+        for group in file["steps/0001/increments"].values():
+            for joint in group["joints"].values():
+                joint["grouted"][:] = np.maximum(joint["grouted"][:], 1)
 
 
 def test_absent_elements_are_not_drawn(staged):
@@ -56,13 +72,50 @@ def test_every_picture_is_made_with_absent_elements(staged, capsys):
     assert any(name.endswith("job_damage.png") for name in names)
 
 
+def figure_of(folder):
+    """The figure of the stages, drawn."""
+    sheet = SimpleNamespace(save=lambda figure: figure)
+    figure = plot_stages(Faces(SiResults(folder, "job")), sheet)
+    figure.canvas.draw()
+    return figure
+
+
 def test_stages_show_grouted_joints(staged):
+    wait_for_grout(staged)
     results = SiResults(staged, "job")
     assert changing_steps(results) == [1, 2]
     file = plot_stages(Faces(results), Sheet(staged / "stages"))[0]
     image = matplotlib.image.imread(file)[..., :3]
     orange = (image[..., 0] > 0.7) & (image[..., 2] < 0.2) & (image[..., 1] < 0.5)
     assert orange.sum() > 50
+
+
+def test_joints_without_grout_are_not_called_grouted(staged):
+    """Points that are not there yet do not wait for grout: without *GROUT they come bonded."""
+    assert figure_of(staged).legends == []
+    wait_for_grout(staged)
+    (legend,) = figure_of(staged).legends
+    assert [text.get_text() for text in legend.texts] == ["joint, not grouted", "joint, grouted"]
+
+
+@pytest.mark.parametrize("scale", [0.15, 1.0, 4.0])
+def test_words_of_the_colour_bar_have_room(tmp_path, scale):
+    """Dams that are low and wide, or tall: the words lie in the picture, and apart."""
+    figure = figure_of(write_stages(tmp_path, scale))
+    bar = figure.axes[-1]
+    label = bar.xaxis.label.get_window_extent()
+    ticks = [text.get_window_extent() for text in bar.get_xticklabels()]
+    assert bar.xaxis.label.get_text() == "step in which an element was added"
+    for box in (label, *ticks):
+        assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 and box.y1 <= figure.bbox.y1
+    assert len(ticks) == 2
+    assert not ticks[0].overlaps(ticks[1]) and not any(label.overlaps(box) for box in ticks)
+
+
+def test_steps_have_their_names_as_written(staged):
+    titles = [axis.get_title(loc="left") for axis in figure_of(staged).axes[:2]]
+    assert titles == ["step 1: EARTHQUAKE", f"step 2: {SiResults(staged, 'job').step_name(2)}"]
 
 
 def test_a_run_without_stages_has_no_such_picture(tmp_path):

@@ -175,6 +175,16 @@ def test_the_arguments(keyway):
     assert "the UMAT greets" in run.stdout
 
 
+def test_a_leg_is_a_step(keyway):
+    """KSTEP, KINC; TIME of the leg and of the test, and DTIME."""
+    run = pull(keyway, "tells_arguments.for", deck(leg="0.001, 2, 1.\n0.002, 2, 4."))
+    lines = [line.split() for line in (run.folder / "job.msg").read_text().splitlines()]
+    steps = [tuple(map(int, line[5:7])) for line in lines if line[0] == "who"][1:]
+    times = [tuple(map(float, line[1:4])) for line in lines if line[0] == "time"][1:]
+    assert list(dict.fromkeys(steps)) == [(1, 1), (1, 2), (2, 1), (2, 2)]
+    assert list(dict.fromkeys(times)) == [(0, 0, 0.5), (0.5, 0.5, 0.5), (0, 1, 2), (2, 3, 2)]
+
+
 def test_an_unsymmetric_tangent_is_symmetrised_with_a_note(keyway):
     run = pull(keyway, "unsymmetric.for", deck(3, third=0.5))
     assert "DDSDDE of the UMAT is not symmetric (material PLAIN, element 1" in run.stderr
@@ -229,6 +239,7 @@ def test_flags_of_the_user_and_several_sources(keyway, tmp_path):
 def test_unusable_files_are_errors_of_usage(keyway, source, word):
     run = pull(keyway, source, deck(), code=2)
     assert word in run.stderr
+    assert run.stderr.splitlines()[0].endswith("[umat-failed]")
 
 
 def test_umat_without_option_is_an_error(keyway):

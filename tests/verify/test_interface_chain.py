@@ -131,5 +131,5 @@ def test_nodes_without_a_partner_are_reported(keyway):
     assert cover["elements_without_partner"] == [len(pair.mesh.bricks) + 8]
     assert abs(cover["largest_gap"] - 0.02) < 1e-12 and cover["largest_overlap"] == 0.0
     bare, gap = (w for w in run.json["warnings"] if "*INTERFACE" in w)
-    assert "1 of the 4 m2 of the slave face have no master facet opposite" in bare
-    assert "the faces lie up to 0.02 m apart" in gap
+    assert "1 of the area 4 of the slave face has no master facet opposite" in bare
+    assert "the faces lie up to 0.02 apart" in gap

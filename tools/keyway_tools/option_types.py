@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from argparse import ArgumentTypeError
+from pathlib import Path
 
 
 def _number(text: str, expected: str) -> float:
@@ -57,3 +58,11 @@ def count(text: str) -> int:
 def count_from_zero(text: str) -> int:
     """A whole number from 0 on."""
     return _whole(text, 0)
+
+
+def deck_path(text: str) -> Path:
+    """The path of a deck to write; it ends in .inp also where that is left out."""
+    path = Path(text)
+    if not path.name:
+        raise ArgumentTypeError(f"{text}: expected the name of a deck")
+    return path if path.suffix.lower() == ".inp" else path.with_name(f"{path.name}.inp")

@@ -132,11 +132,11 @@ def _node_curves(results: SiResults) -> list[list[NodeCurve]]:
         table = results.table(name)
         if not len(table.get("U1", ())):
             continue
-        own = []
+        own, of_set = [], results.set_of_table(name.removeprefix("node_"))
         for node, rows in _curves_by(table, "node").items():
             parts = [table[f"U{k}"][rows] for k in (1, 2, 3)]
             motion = max(_largest(part) + _largest(-part) for part in parts)
-            own.append(NodeCurve(name.removeprefix("node_"), node, table, rows, motion))
+            own.append(NodeCurve(of_set, node, table, rows, motion))
         sets.append(own)
     return sets
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 import pyvista as pv
@@ -18,6 +19,8 @@ from .results import Results
 MOST_PANELS = 12
 COLUMNS = 4
 COLOURS = "YlGnBu"
+BAR = 0.9  # [inches] of the colour bar below the panels, with its label
+TITLE_LETTERS = 38  # of a line above a panel
 OPEN, GROUTED = (20, 20, 20), (213, 94, 0)  # lines of joints, red green blue
 
 
@@ -31,24 +34,29 @@ def plot_stages(faces: Faces, sheet: Sheet) -> list[Path]:
         return []
     steps = [steps[k] for k in np.unique(np.linspace(0, len(steps) - 1, MOST_PANELS).astype(int))]
     colours = plt.get_cmap(COLOURS, steps[-1])
-    pictures = [_stage(faces, step, (0.5, steps[-1] + 0.5)) for step in steps]
+    has_grouts = _has_grouts(faces.results)
+    pictures = [_stage(faces, step, (0.5, steps[-1] + 0.5), has_grouts) for step in steps]
     columns = min(COLUMNS, len(steps))
     shape = max(p.image.shape[0] / p.image.shape[1] for p in pictures)
     figure, axes = new_figure(
         -(-len(steps) // columns), width=max(3.6 * columns, 7.0), row_height=3.6 * shape + 0.5,
         columns=columns, squeeze=False,
     )  # fmt: skip
+    figure.set_figheight(figure.get_figheight() + BAR)
     for axis in axes.flat:
         hide_frame(axis)
     for axis, step, picture in zip(axes.flat, steps, pictures, strict=False):
         axis.imshow(picture.image, extent=picture.extent)
-        axis.set_title(f"step {step}: {_name(faces.results, step)}", fontsize=11)
+        title = f"step {step}: {faces.results.step_name(step)}"
+        axis.set_title(fill(title, TITLE_LETTERS), fontsize=11)
     norm = BoundaryNorm(np.arange(0.5, steps[-1] + 1.0), steps[-1])
     shades = plt.cm.ScalarMappable(norm, colours)
-    bar = figure.colorbar(shades, ax=axes.ravel().tolist(), shrink=0.7, aspect=30)
+    bar = figure.colorbar(
+        shades, ax=axes.ravel().tolist(), location="bottom", shrink=0.7, aspect=40
+    )
     bar.set_ticks(np.unique(np.linspace(1, steps[-1], min(steps[-1], 12)).astype(int)))
     bar.set_label("step in which an element was added")
-    if _has_grouts(faces.results):
+    if has_grouts:
         lines = {"joint, not grouted": OPEN, "joint, grouted": GROUTED}
         handles = [
             Line2D([], [], color=np.array(rgb) / 255.0, lw=2.5, label=label)
@@ -76,35 +84,40 @@ def changing_steps(results: Results) -> list[int]:
     return found if len(found) > 1 else []
 
 
-def _grouted_points(results: Results, step: int) -> dict[str, np.ndarray | None]:
-    """Whether the points of each joint are grouted at the end of a step; None where not saved."""
+NOT_GROUTED, BONDED = 1, 2  # states of a point; without *GROUT it is bonded when it appears
+
+
+def _states(results: Results, step: int) -> dict[str, np.ndarray | None]:
+    """States of the points of each joint at the end of a step; None where not saved."""
     saved = results.file[f"steps/{step:04d}"].get("increments", {})
     saved = [group for _, group in sorted(saved.items()) if "joints" in group]
     found: dict[str, np.ndarray | None] = {}
     for name in results.joint_names():
         path = f"joints/{name}/grouted"
         known = saved and path in saved[-1]
-        found[name] = (saved[-1][path][:] == 2).astype(int) if known else None
+        found[name] = saved[-1][path][:] if known else None
     return found
+
+
+def _grouted_points(results: Results, step: int) -> dict[str, np.ndarray | None]:
+    """1 for the points of each joint that are grouted at the end of a step, 0 for the others."""
+    states = _states(results, step)
+    return {
+        name: None if state is None else (state == BONDED).astype(int)
+        for name, state in states.items()
+    }
 
 
 def _has_grouts(results: Results) -> bool:
     """Whether some joint waits for its grout in some step."""
     for key in results.file["steps"]:
-        points = _grouted_points(results, int(key)).values()
-        if any(p is not None and (p == 0).any() for p in points):
+        states = _states(results, int(key)).values()
+        if any(state is not None and (state == NOT_GROUTED).any() for state in states):
             return True
     return False
 
 
-def _name(results: Results, step: int) -> str:
-    """The name of a step in small letters."""
-    name = results.file[f"steps/{step:04d}"].attrs["name"]
-    name = name.decode() if isinstance(name, bytes) else str(np.ravel(name)[0])
-    return name.strip("\0 ").replace("_", " ").lower()
-
-
-def _stage(faces: Faces, step: int, ends: tuple[float, float]) -> Picture:
+def _stage(faces: Faces, step: int, ends: tuple[float, float], has_grouts: bool) -> Picture:
     """What is there in a step, inside the outline of the complete dam."""
     now = Faces(faces.results, step)
     body = now.grid()
@@ -113,10 +126,10 @@ def _stage(faces: Faces, step: int, ends: tuple[float, float]) -> Picture:
     body.cell_data["value"] = values.astype(float)
     view = list(now.views.values())[-1]
     paint = Paint(None, ends, COLOURS, round(ends[1] - ends[0]))
-    return render(body, view, paint, _lines(now, step), faces.surface())
+    return render(body, view, paint, _lines(now, step, has_grouts), faces.surface())
 
 
-def _lines(faces: Faces, step: int) -> pv.PolyData | None:
+def _lines(faces: Faces, step: int, has_grouts: bool) -> pv.PolyData | None:
     """Lines of the joints: those around grouted facets have a colour of their own."""
     parts = []
     for name, grouted in _grouted_points(faces.results, step).items():
@@ -125,7 +138,7 @@ def _lines(faces: Faces, step: int) -> pv.PolyData | None:
             continue
         facets = joint.facets[np.isin(joint.facets, faces.nodes).all(axis=1)]
         done = np.zeros(len(facets), dtype=bool)
-        if grouted is not None and len(facets):
+        if has_grouts and grouted is not None and len(facets):
             points = faces.results.units.length * faces.results.file[f"joints/{name}/x"][:]
             near = cKDTree(points).query(faces.results.x[facets].reshape(-1, 3))[1]
             done = grouted[near].reshape(-1, 4).all(axis=1)

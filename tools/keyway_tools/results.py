@@ -6,6 +6,7 @@ import fcntl
 import glob
 import json
 import socket
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -149,8 +150,15 @@ class Results:
     def joint_of_table(self, word: str) -> str:
         """The joint of the table joint_WORD: other letters than a to z are '_' in its name."""
         known = self.summary.get("joints", {}) if self.path(".json").exists() else {}
-        found = [name for name in known if as_file_word(name) == word]
-        return found[0] if len(found) == 1 else word
+        return _written_as(word, known)
+
+    def set_of_table(self, word: str) -> str:
+        """The set of the table node_WORD, as job.h5 names it."""
+        return _written_as(word, self.file.get("sets/nodes", {}))
+
+    def step_name(self, step: int) -> str:
+        """The name of a step."""
+        return _text(self.file[f"steps/{step:04d}"].attrs["name"])
 
     def find(self, path: str) -> Any:
         """Value in the summary, as in find('steps.0.frequencies.2.hz')."""
@@ -327,6 +335,12 @@ class Results:
     def joint_faces(self, name: str) -> JointFaces | None:
         """The polygons of a joint."""
         return read_joint_faces(self.file[f"joints/{name}"], self.node_position, self)
+
+
+def _written_as(word: str, names: Iterable[str]) -> str:
+    """The one name that is `word` in the name of a file; else the word."""
+    found = [name for name in names if as_file_word(name) == word]
+    return found[0] if len(found) == 1 else word
 
 
 def _text(word: Any) -> str:

@@ -6,7 +6,7 @@ module message_catalogue
   use message_pages, only: message_page, page_list
   use pages_of_decks, only: add_pages_of_decks
   use pages_of_models, only: add_pages_of_models
-  use pages_of_runs, only: add_pages_of_runs
+  use pages_of_runs, only: add_page_of_umat, add_pages_of_runs
   use pages_of_values, only: add_pages_of_values
   implicit none
   private
@@ -32,6 +32,7 @@ contains
     character(:), allocatable :: label
     type(page_list) :: list
     call add_pages_of_decks(list)
+    call add_page_of_umat(list)
     call add_pages_of_models(list)
     call add_pages_of_values(list)
     label = label_in(list, problem, expected)
@@ -65,7 +66,9 @@ contains
     label = ''
     is_value = .false.
     do i = 1, list%num_pages
-      if (list%pages(i)%name == last_resort) is_value = list%pages(i)%fits(found)
+      if (list%pages(i)%name == last_resort) then
+        is_value = list%pages(i)%fits(found) .and. .not. has_bare_value(found)
+      end if
       if (list%pages(i)%name == last_resort) cycle
       if (list%pages(i)%fits(found)) label = name_in_brackets(list%pages(i))
       if (len(label) > 0) return
@@ -76,6 +79,13 @@ contains
       if (len(label) > 0) return
     end do
   end function label_in
+
+  !> Whether a message begins with what was found, without quotes: 'found 4 nodes'. Words of what
+  !> is expected then say more of the kind.
+  pure logical function has_bare_value(found)
+    character(*), intent(in) :: found !< what was found, '' for what stands in quotes
+    has_bare_value = index(found, 'found ') == 1 .and. index(found, "found '") == 0
+  end function has_bare_value
 
   !> ' [no-support]'.
   pure function name_in_brackets(page) result(label)

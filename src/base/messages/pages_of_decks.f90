@@ -67,7 +67,8 @@ contains
   subroutine pages_from_unit_of_record(list)
     type(page_list), intent(inout) :: list
     call list%add('unit-of-record', &
-                  'name the unit|names a unit|names the unit', &
+                  'name the unit|names a unit|names the unit|turns the record into|as the '// &
+                  'conversion of the', &
                   'A file of a recorded motion says, or does not say, in which unit its '// &
                   'accelerations are, and the deck says something that could mean two things.', &
                   'Give UNIT in *AMPLITUDE (G, M/S2 or CM/S2), and keep SCALE for what scales '// &
@@ -76,7 +77,9 @@ contains
                   'UNIT=G')
     call list%add('not-available', &
                   'not available|is not supported|are not supported|tied surfaces are no '// &
-                  'contact|integration is implicit|has no viscous forces', &
+                  'contact|integration is implicit|has no viscous forces|follows its loads|'// &
+                  'no such numerical damping|no implicit Euler|of this step grow by|does not '// &
+                  'depend on the rate', &
                   'Keyway knows the keyword or the choice and does not have it. Input that is '// &
                   'not understood is never passed over.', &
                   'Take what the message offers in its place, or leave the card out. '// &
@@ -84,7 +87,7 @@ contains
                   '*TRANSFORM', &
                   'supports and forces along the global axes')
     call list%add('reduced-model', &
-                  'reduced model|without REDUCED|*DYNAMIC, REDUCED', &
+                  'reduced model|without REDUCED|*DYNAMIC, REDUCED|is the solver of', &
                   'A step with *DYNAMIC, REDUCED holds linear elastic solids with joints on '// &
                   'fixed supports. The deck has more: cracking concrete, stages, equations, '// &
                   'temperatures, moving supports.', &

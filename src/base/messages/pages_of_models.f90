@@ -12,6 +12,7 @@ contains
     type(page_list), intent(inout) :: list
     call pages_from_no_effect(list)
     call pages_from_loose_block(list)
+    call pages_from_plastic_table(list)
     call pages_from_faces_apart(list)
     call pages_from_acts_twice(list)
   end subroutine add_pages_of_models
@@ -21,8 +22,8 @@ contains
     call list%add('no-effect', &
                   'not held in all directions|has no effect|have no effect|nothing uses|'// &
                   'not written|sets the initial '// &
-                  'velocities|belongs to no element|has no field|the jump of|ends the step '// &
-                  'earlier|fields stay zero|sliding is small|strains and rotations are '// &
+                  'velocities|belongs to no element|has no field|the jump of|'// &
+                  'fields stay zero|sliding is small|strains and rotations are '// &
                   'small|there is no V|held in direction|do not meet', &
                   'The program understands what the deck says, and it changes nothing: a '// &
                   'parameter without a meaning here, a card that nothing uses, a field that '// &
@@ -55,7 +56,7 @@ contains
                   '*ELEMENT, TYPE=C3D8B')
     call list%add('different-supports', &
                   'different accelerations|have this acceleration|too, without this '// &
-                  'acceleration|moves, but no support', &
+                  'acceleration|moves, but no support|has the acceleration of an earlier', &
                   'Accelerations of supports describe the motion of the base, which is one '// &
                   'motion for each direction.', &
                   'Give all supports of a direction the same acceleration, or use *BASE '// &
@@ -86,7 +87,8 @@ contains
                   '*JOINT LAW, NAME=A', &
                   '*JOINT LAW, NAME=A, FRICTION=0.6')
     call list%add('bad-element', &
-                  'is inverted or flat|has a Jacobian|bends inward|has no area|Jacobian', &
+                  'is inverted or flat|has a Jacobian|bends inward|has no area|Jacobian|'// &
+                  'has a twisted face|two nodes at the same place|seven different nodes', &
                   'The corners of an element are in a wrong order, or the element is too '// &
                   'distorted: its volume is zero or negative at a corner.', &
                   'List four corners of one face anticlockwise as seen from the opposite face, '// &
@@ -102,7 +104,8 @@ contains
                   '*MATERIAL without *ELASTIC', &
                   '*ELASTIC; 2.4e10, 0.2')
     call list%add('long-element', &
-                  'its unloading would release|m long|elements are longer than', &
+                  'its unloading would release|has a length of|elements are longer than|'// &
+                  'snaps back|at a lower strength', &
                   'A crack releases its energy over the length of an element. In a long '// &
                   'element the stress would have to fall faster than the element unloads '// &
                   '(snap-back).', &
@@ -111,6 +114,21 @@ contains
                   'energy stays right.', &
                   '3 m elements, G_f = 150 N/m', &
                   '1 m elements, or LONG ELEMENTS=LOWER STRENGTH')
+  end subroutine pages_from_loose_block
+
+  subroutine pages_from_plastic_table(list)
+    type(page_list), intent(inout) :: list
+    call list%add('plastic-table', &
+                  'the yield stress falls|the first row has a plastic strain|the plastic '// &
+                  'strain does not ascend', &
+                  'The table of *PLASTIC begins at a plastic strain above zero, does not '// &
+                  'ascend, or its yield stress falls. Where it falls the strain gathers in '// &
+                  'one row of elements: results depend on their size, and with 3 G or more '// &
+                  'there is no solution.', &
+                  'Compare the row with the one before. For concrete that cracks take '// &
+                  '*CONCRETE DAMAGED PLASTICITY, which uses the size of the elements.', &
+                  '*PLASTIC; 240e6, 0.; 100e6, 0.01', &
+                  '*PLASTIC; 240e6, 0.; 260e6, 0.01')
     call list%add('concrete-table', &
                   'plastic strain|table starts at|of the row before|first damage|does not '// &
                   'decrease|a first strength|strength in tension|create energy|cracks at a '// &
@@ -121,12 +139,12 @@ contains
                   'draws what the tables give; docs/material.md shows how to choose them.', &
                   'damage 0.9 at a small opening', &
                   'a smaller damage, or a larger opening')
-  end subroutine pages_from_loose_block
+  end subroutine pages_from_plastic_table
 
   subroutine pages_from_faces_apart(list)
     type(page_list), intent(inout) :: list
     call list%add('faces-apart', &
-                  'do not lie on each other|lies opposite|m apart|lie up to|the faces '// &
+                  'do not lie on each other|lies opposite| apart|lie up to|the faces '// &
                   'overlap|facets overlap|no master facet|on the same side|share their '// &
                   'nodes|the faces of JOINT8|shares node|transmit no force|constrains no '// &
                   'node|a node of the slave surface follows|is the master surface|is the slave '// &
@@ -150,8 +168,8 @@ contains
                   'the held node as a later term')
     call list%add('water', &
                   'wetted|does not reach joint|above the top of the surface|TAIL WATER|below '// &
-                  'BED|the water stands along|wets the surface|in one of the steps|reservoir '// &
-                  '''''', &
+                  'BED|the water stands along|wets the surface|in one of the steps|at '// &
+                  'reservoir', &
                   'The level, the bed, the surface or the uplift of a reservoir do not fit the '// &
                   'model: no face is wet, or the water of a joint begins nowhere.', &
                   'Compare LEVEL and BED with the heights of the surface. UPLIFT needs a '// &
@@ -159,7 +177,7 @@ contains
                   'LEVEL=105 where the dam stands at z = 400 to 535', &
                   'LEVEL=505, BED=400')
     call list%add('units', &
-                  'not in SI|must have the same unit|as the conversion of the', &
+                  'not in SI|must have the same unit', &
                   'The numbers of the deck are of another system of units than the defaults of '// &
                   'the keyword (1000 kg/m3, 9.81 m/s2), or of two systems.', &
                   'Use one system in the whole deck and give DENSITY and GRAVITY in it. With '// &
@@ -170,7 +188,7 @@ contains
     call list%add('motion-record', &
                   ''''' ends at|'''' begins at|the peak of the record|all values of '// &
                   'amplitude|record of acceleration: its values|goes on after|continues at '// &
-                  'its last', &
+                  'its last|the peak of the history', &
                   'A history does not fit the step: it begins or ends elsewhere, does not come '// &
                   'to rest, is zero, or has peaks between the increments.', &
                   'Compare the times of the history with those of the step. make_motion.py '// &
@@ -201,7 +219,7 @@ contains
                   'node 17 and node 18')
     call list%add('wrong-kind', &
                   'is a C3D8|is a JOINT8|is a IFACE4|has no faces|no outer face|has no values '// &
-                  'at|not static|is LUMPED|has no instances|is the solver of', &
+                  'at|not static|has no instances', &
                   'The deck names a thing that exists and is of another kind than the keyword '// &
                   'needs: a joint element where solids are meant, a node that is on no face.', &
                   'Look at the set that the message names: often it holds more than was meant.', &

@@ -3,7 +3,7 @@ module pages_of_runs
   use message_pages, only: page_list
   implicit none
   private
-  public :: add_pages_of_runs
+  public :: add_pages_of_runs, add_page_of_umat
 
 contains
 
@@ -96,14 +96,7 @@ contains
                   'of joints and one thread take less.', &
                   'keyway -j 16 dam.inp', &
                   'keyway -j 1 dam.inp')
-    call list%add('umat-failed', &
-                  'UMAT|DDSDDE|UEXTERNALDB|DROT|the law of a user', &
-                  'The user material could not be compiled or loaded, or stopped the analysis.', &
-                  'The lines below the message are those of the compiler, or of the UMAT. '// &
-                  '--umat-check compares DDSDDE with differences of STRESS; --material leads '// &
-                  'one point along a path.', &
-                  'keyway --umat law.f90 dam.inp', &
-                  'keyway --umat law.f90 --umat-check dam.inp')
+    call add_page_of_umat(list)
     call list%add('no-equilibrium', &
                   'no equilibrium|penetration of a contact|does not converge|did not '// &
                   'converge|no initial acceleration|time increment|smallest increment|has not '// &
@@ -135,6 +128,19 @@ contains
                   'The answer up to the time named is right. Matching meshes, or larger '// &
                   'facets, bear more; slips of metres are outside of what the program can do.')
   end subroutine pages_from_no_memory
+
+  !> The page of a user material that fails, also while a deck is read.
+  subroutine add_page_of_umat(list)
+    type(page_list), intent(inout) :: list
+    call list%add('umat-failed', &
+                  'UMAT|DDSDDE|UEXTERNALDB|DROT|the law of a user|call without strain', &
+                  'The user material could not be compiled or loaded, or stopped the analysis.', &
+                  'The lines below the message are those of the compiler, or of the UMAT. '// &
+                  '--umat-check compares DDSDDE with differences of STRESS; --material leads '// &
+                  'one point along a path.', &
+                  'keyway --umat law.f90 dam.inp', &
+                  'keyway --umat law.f90 --umat-check dam.inp')
+  end subroutine add_page_of_umat
 
   subroutine pages_from_energy(list)
     type(page_list), intent(inout) :: list

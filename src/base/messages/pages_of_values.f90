@@ -18,7 +18,9 @@ contains
     call list%add('excludes', &
                   'exclude each other|has both|not both|goes with|go with|does not belong '// &
                   'to|has no meaning|not go with|is given with |a history for a file|several '// &
-                  'materials|either |has ADJUST|a joint with a GAP|in a step *', &
+                  'materials|expected either |has ADJUST|a joint with a GAP|in a step *|the '// &
+                  'model has a *TIE|the model has an *INTERFACE|is LUMPED|a second inelastic '// &
+                  'law|ends the step earlier', &
                   'Two choices contradict each other, or one of them has no meaning beside the '// &
                   'other.', &
                   'Keep the one that was meant. keyway --keywords NAME says what goes with '// &
@@ -27,8 +29,8 @@ contains
                   'one of the two')
     call list%add('missing-value', &
                   'is missing|heading is empty|no file is named|has no value|without |is given '// &
-                  'without|does not say whether|has no temperatures|neither |an empty field|'// &
-                  'has neither|a history without', &
+                  'without|does not say whether|has no temperatures|an empty field|'// &
+                  'has neither|LENGTH is not given|a history without', &
                   'The keyword needs a parameter, a field or a word that the card does not '// &
                   'have.', &
                   'Add what the message asks for; keyway --keywords NAME shows an example.', &

@@ -7,6 +7,7 @@ module diagnostic_text
   use diagnostics, only: diagnostic, diagnostic_list, place, severity_error, severity_ignored, &
                          severity_warning
   use fault_kinds, only: fault_kind
+  use invisible_letters, only: name_of_invisible
   use message_catalogue, only: label_of_fault
   use text_buffers, only: text_buffer
   use utf8_text, only: utf8_width
@@ -153,7 +154,7 @@ contains
   !> file:line: *KEYWORD: what is wrong; what was expected.
   pure function headline(fault) result(text)
     type(diagnostic), intent(in) :: fault
-    character(:), allocatable :: text
+    character(:), allocatable :: text, hidden
     text = printable(fault%spot%file)//':'
     if (fault%spot%line > 0) text = text//as_text(fault%spot%line)//':'
     text = text//' '
@@ -162,9 +163,22 @@ contains
     end if
     if (fault%severity /= severity_error) text = text//'warning: '
     text = text//printable(fault%problem)
+    hidden = hidden_in(fault%spot)
+    if (len(hidden) > 0) text = text//'; the word has '//hidden
     if (len(fault%expected) > 0) text = text//'; expected '//printable(fault%expected)
     if (len(fault%nearest) > 0) text = text//"; did you mean '"//printable(fault%nearest)//"'?"
   end function headline
+
+  !> The name of an invisible letter in the word that is meant; '' without one.
+  pure function hidden_in(spot) result(name)
+    type(place), intent(in) :: spot
+    character(:), allocatable :: name
+    integer :: last
+    name = ''
+    if (.not. allocated(spot%source) .or. spot%column == 0) return
+    last = min(spot%column + spot%length - 1, len(spot%source))
+    name = name_of_invisible(spot%source(spot%column:last))
+  end function hidden_in
 
   !> The line of the deck and carets below the word; '' where no line is known.
   pure function excerpt(spot) result(text)

@@ -34,10 +34,10 @@ contains
     if (worst(1) == 0) return
     associate (joint => joints(worst(1)), p => worst(2))
       call raise(error, 'joint '//joint%name//' has slipped '// &
-                 as_text(slip_at(states(worst(1)), p))//' m at ('//as_text(joint%x(1, p))//', '// &
+                 as_text(slip_at(states(worst(1)), p))//' at ('//as_text(joint%x(1, p))//', '// &
                  as_text(joint%x(2, p))//', '//as_text(joint%x(3, p))//') at time '// &
                  as_text(time)//'; joints between different meshes allow small sliding only, '// &
-                 as_text(joint%admissible_slip(p))//' m at this point (size of a facet)')
+                 as_text(joint%admissible_slip(p))//' at this point (size of a facet)')
     end associate
   end subroutine check_slip
 

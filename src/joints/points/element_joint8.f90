@@ -127,7 +127,7 @@ contains
       call raise(error, 'JOINT8 element '//text(mesh%element_id(element))//': nodes ' &
                  //text(mesh%node_id(mesh%nodes(a, element)))//' and ' &
                  //text(mesh%node_id(mesh%nodes(a + 4, element)))//' lie ' &
-                 //length_text(distance)//' m apart; expected faces whose nodes coincide')
+                 //length_text(distance)//' apart; expected faces whose nodes coincide')
       return
     end do
     if (norm2(face_vector(x(:, 1:4))) <= coincidence*diagonal**2) then

@@ -166,7 +166,7 @@ contains
       end do
       if (place == 0) return
       call model%cards(place)%warn(faults, "the record '"//record%name//"' ends at "// &
-                                   as_text(last*work%end_factor)//' m/s2, not at zero: this '// &
+                                   as_text(last*work%end_factor)//', not at zero: this '// &
                                    'acceleration goes on after t = '//as_text(ends_at)//' s')
     end associate
   end subroutine warn_of_end
@@ -199,8 +199,8 @@ contains
       level = model%cards(i)%real('LEVEL')
       bed = model%cards(i)%real('BED')
       if (level <= crest + round_off*(level - bed)) cycle
-      call model%cards(i)%warn(faults, 'the level, '//as_text(level)//' m, is above the top of '// &
-                               'the surface, '//as_text(crest)//' m: water above the top does '// &
+      call model%cards(i)%warn(faults, 'the level, '//as_text(level)//', is above the top of '// &
+                               'the surface, '//as_text(crest)//': water above the top does '// &
                                'not act')
     end do
   end subroutine warn_of_levels

@@ -104,8 +104,8 @@ contains
       end do
     end associate
     if (bed <= lowest + round_off*(this%real('LEVEL') - bed)) return
-    call this%warn(faults, 'the surface goes down to '//as_text(lowest)//' m, below BED, '// &
-                   as_text(bed)//' m: there the water does not act')
+    call this%warn(faults, 'the surface goes down to '//as_text(lowest)//', below BED, '// &
+                   as_text(bed)//': there the water does not act')
   end subroutine warn_of_height
 
   !> The weight of the same step should act against UP.

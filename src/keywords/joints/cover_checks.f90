@@ -82,25 +82,25 @@ contains
     end if
     bare = cover%slave_area - cover%covered_area
     if (bare > bare_part*cover%slave_area) then
-      call place%warn(faults, as_text(bare)//' of the '//as_text(cover%slave_area)// &
-                      ' m2 of the slave face have no master facet opposite, most of it at '// &
+      call place%warn(faults, as_text(bare)//' of the area '//as_text(cover%slave_area)// &
+                      ' of the slave face has no master facet opposite, most of it at '// &
                       place_text(cover%bare_place))
     end if
     if (cover%excess_area > bare_part*cover%slave_area) then
       call place%warn(faults, 'master facets overlap: '// &
-                      as_text(cover%excess_area)//' of the '//as_text(cover%slave_area)// &
-                      ' m2 of the slave face are covered twice')
+                      as_text(cover%excess_area)//' of the area '// &
+                      as_text(cover%slave_area)//' of the slave face is covered twice')
     end if
     side = sqrt(cover%slave_area/max(1, size(cover%bare)))
     afterwards = ''
     if (is_moved) afterwards = '; ADJUST=YES moves them together'
     if (cover%largest_gap > gap_part*side .and. .not. gaps_count) then
       call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
-                      ' m apart, at '//place_text(cover%gap_place)//afterwards)
+                      ' apart, at '//place_text(cover%gap_place)//afterwards)
     end if
     if (cover%largest_overlap > gap_part*side) then
       call place%warn(faults, 'the faces overlap by up to '//as_text(cover%largest_overlap)// &
-                      ' m, at '//place_text(cover%overlap_place)//afterwards)
+                      ', at '//place_text(cover%overlap_place)//afterwards)
     end if
   end subroutine keep_cover
 

@@ -128,7 +128,7 @@ contains
       call keep_cover(place, request%name, 'TIE', cover, .false., request%adjusts, model, faults)
       if (cover%largest_gap > request%tolerance) then
         call place%warn(faults, 'the faces lie up to '//as_text(cover%largest_gap)// &
-                        ' m apart and are tied there too', 'at most the POSITION TOLERANCE')
+                        ' apart and are tied there too', 'at most the POSITION TOLERANCE')
       end if
       if (request%stiffness > 0.0_rk) return
       tie%name = request%name

@@ -185,7 +185,7 @@ contains
     reference = this%real_at(line, 5)
     if (reference >= top) then
       call this%fault_at(faults, line, 5, "found '"//this%text_at(line, 5)//"'", &
-                         'z_ref below z_top, '//this%text_at(line, 4)//' m')
+                         'z_ref below z_top, '//this%text_at(line, 4))
       return
     end if
     call warn_of_dry_faces(this, line, elements, top, model, faults)
@@ -211,7 +211,7 @@ contains
       end do
     end associate
     call this%warn_at(faults, line, 4, 'the load has no effect: no face has a point below '// &
-                      'z_top, '//this%text_at(line, 4)//' m')
+                      'z_top, '//this%text_at(line, 4))
   end subroutine warn_of_dry_faces
 
   !> Adds a pressure on the face that the label names.

@@ -68,9 +68,13 @@ contains
     end if
     if (this%real('LEVEL') <= this%real('BED')) then
       call this%fault_parameter(faults, 'LEVEL', "found '"//this%text('LEVEL')//"'", &
+<<<<<<< HEAD
                                 'a level above BED, '//this%text('BED')//' m; to empty '// &
                                 'a reservoir of an earlier step give its card again with '// &
                                 'HYDROSTATIC=NO')
+=======
+                                'a level above BED, '//this%text('BED'))
+>>>>>>> fixD
       return
     end if
     lake%kind = 'reservoir'
@@ -86,7 +90,7 @@ contains
     if (wetted_area(lake, model%problem%mesh) <= 0.0_rk) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
                                 'a surface with faces between BED, '//this%text('BED')// &
-                                ' m, and LEVEL, '//this%text('LEVEL')//' m')
+                                ', and LEVEL, '//this%text('LEVEL'))
       return
     end if
     if (model%problem%upstream_surface == 0) model%problem%upstream_surface = found

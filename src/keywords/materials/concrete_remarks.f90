@@ -57,7 +57,7 @@ contains
                /(1.0_rk + 2.0_rk*kernel%gamma/3.0_rk)/(kernel%tan_dilation - slope)
     call model%cards(given%plasticity%card)%warn( &
       faults, 'plastic flow would create energy under a mean pressure above '// &
-      as_text(pressure)//' Pa', 'a dilation of at most '//as_text(atan(slope)/degree)// &
+      as_text(pressure), 'a dilation of at most '//as_text(atan(slope)/degree)// &
       ' deg with these fb0/fc0 and Kc')
   end subroutine warn_of_dilation
 

@@ -63,7 +63,7 @@ contains
     integer :: worst, num_others, card
     call find_longest_band(given%constants, same, limit)
     worst = maxloc(width, 1)
-    problem = 'element '//as_text(elements(worst))//' is '//as_text(width(worst))//' m long: '
+    problem = 'element '//as_text(elements(worst))//' has a length of '//as_text(width(worst))//': '
     card = given%stiffening%card
     remedy = '; or LONG ELEMENTS=LOWER STRENGTH'
     if (limit%keyword == stiffening_table) then
@@ -79,7 +79,7 @@ contains
     if (num_others == 1) problem = problem//'; 1 more is too long'
     if (num_others > 1) problem = problem//'; '//as_text(num_others)//' more are too long'
     call model%cards(card)%fault_at(faults, limit%row, 0, problem, 'at most '//as_text(longest)// &
-                                    ' m, '//limit%expected//remedy)
+                                    ', '//limit%expected//remedy)
   end subroutine fault_length
 
   !> Lists the elements that crack below the strength of the table.
@@ -95,9 +95,9 @@ contains
     worst = maxloc(width, 1)
     call model%cards(given%stiffening%card)%warn( &
       faults, as_text(size(touched))//' of '//as_text(size(elements))//' elements are longer '// &
-      'than '//as_text(longest)//' m and crack at a lower strength with the same energy, '// &
-      'element '//as_text(elements(worst))//' of '//as_text(width(worst))//' m at '// &
-      as_text(given%constants%tension(1, 1)*sqrt(longest/width(worst)))//' Pa: elements '// &
-      as_ranges(touched))
+      'than '//as_text(longest)//' and crack at a lower strength with the same energy, '// &
+      'element '//as_text(elements(worst))//' with a length of '//as_text(width(worst))// &
+      ' at a strength of '//as_text(given%constants%tension(1, 1)*sqrt(longest/width(worst)))// &
+      ': elements '//as_ranges(touched))
   end subroutine warn_of_strength
 end module concrete_widths

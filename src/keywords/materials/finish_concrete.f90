@@ -145,20 +145,20 @@ contains
       if (.not. place%has('LENGTH')) then
         call place%warn(faults, "LENGTH is not given and converts the openings of '"// &
                         model%problem%materials(test%material)%name// &
-                        "' into strains: 1 m is used", &
+                        "' into strains: 1 is used", &
                         'LENGTH, the side of an element [m]')
       end if
       call find_longest_band(given%constants, longest, limit)
       if (test%length <= longest) return
       if (given%constants%lowers_strength) then
-        call place%warn(faults, 'in a length of '//as_text(test%length)//' m the concrete '// &
+        call place%warn(faults, 'in a length of '//as_text(test%length)//' the concrete '// &
                         'cracks at a lower strength, with the same energy', &
-                        'at most '//as_text(longest)//' m for its own strength')
+                        'at most '//as_text(longest)//' for its own strength')
         return
       end if
       call place%fault_parameter(faults, 'LENGTH', 'the concrete snaps back in a length of '// &
-                                 as_text(test%length)//' m', 'at most '//as_text(longest)// &
-                                 ' m: '//limit%expected)
+                                 as_text(test%length), 'at most '//as_text(longest)//': '// &
+                                 limit%expected)
     end associate
   end subroutine check_test
 

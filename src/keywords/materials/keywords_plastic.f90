@@ -135,8 +135,8 @@ contains
       falls = falls .or. curve%slope_of(row) < 0.0_rk
       if (curve%slope_of(row) > -3.0_rk*shear) cycle
       call this%fault_at(faults, row + 1, 1, 'the yield stress falls by '// &
-                         as_text(-curve%slope_of(row))//' Pa for a unit of plastic strain', &
-                         'less than 3 G, '//as_text(3.0_rk*shear)//' Pa')
+                         as_text(-curve%slope_of(row))//' for a unit of plastic strain', &
+                         'less than 3 G, '//as_text(3.0_rk*shear))
       return
     end do
     if (falls) then

@@ -131,8 +131,8 @@ contains
           call this%warn_at(faults, line, 1, 'node '// &
                             as_text(model%problem%mesh%node_id(nodes(i)))//' has a '// &
                             'displacement in direction '//as_text(dof)//' in this step '// &
-                            'already, '//as_text(table%value(dof, nodes(i)))//' m; the '// &
-                            'last one acts, '//as_text(value)//' m')
+                            'already, '//as_text(table%value(dof, nodes(i)))//'; the '// &
+                            'last one acts, '//as_text(value))
           return
         end do
       end do

@@ -35,6 +35,9 @@ module material_path
 
   real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment that is cut
   integer, parameter :: most_calls = 20000 !< of the law in an increment with all its parts
+  character(8), parameter :: strain_names(6) = ['E11     ', 'E22     ', 'E33     ', &
+                                                'gamma 12', 'gamma 13', 'gamma 23']
+  character(3), parameter :: stress_names(6) = ['S11', 'S22', 'S33', 'S12', 'S13', 'S23']
 
 contains
 
@@ -206,21 +209,36 @@ contains
     type(traveller), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: text
+    integer :: i !< component
+    i = test%driven
+    if (i == 0) i = maxloc(abs(now%old%stress(:, 1)), 1)
     text = 'test '//test%name//' stops in leg '//as_text(number)//', increment '// &
-           as_text(increment)//' of '//as_text(test%legs(number)%num_increments)// &
-           ' (E11 '//as_text(now%old%strain(1, 1))//', S11 '//as_text(now%old%stress(1, 1))// &
-           ' before it): '
+           as_text(increment)//' of '//as_text(test%legs(number)%num_increments)//' ('// &
+           trim(strain_names(i))//' '//as_text(now%old%strain(i, 1))//', '//stress_names(i)// &
+           ' '//as_text(now%old%stress(i, 1))//' before it): '
     if (len(outcome%message) > 0) then
       text = text//outcome%message
     else
-      text = text//'no strains give the prescribed stresses'
-      if (any(test%legs(number)%is_stress)) then
-        text = text//'; beyond a peak prescribe a strain (CONTROL=STRAIN, or E in place of S '// &
-               'in the component that softens)'
-      end if
+      text = text//'no strains give the prescribed stresses'//remedy_of(test, test%legs(number))
     end if
     call raise(error, text)
   end subroutine describe_failure
+
+  !> What to do where no strains give the prescribed stresses; '' for a leg without them.
+  pure function remedy_of(test, leg) result(text)
+    type(material_test), intent(in) :: test
+    type(test_leg), intent(in) :: leg
+    character(:), allocatable :: text
+    text = ''
+    if (.not. any(leg%is_stress)) return
+    if (test%driven == 0) then
+      text = '; beyond a peak prescribe a strain (E in place of S in the component that softens)'
+    else if (leg%is_stress(test%driven)) then
+      text = '; beyond a peak prescribe a strain (CONTROL=STRAIN)'
+    else
+      text = '; the curve turns back here: take a smaller LENGTH'
+    end if
+  end function remedy_of
 
   subroutine open_record(now, num_rows, record)
     type(traveller), intent(in) :: now

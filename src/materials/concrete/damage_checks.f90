@@ -68,7 +68,7 @@ contains
     limit%problem = 'no limit'
     limit%expected = ''
     if (curve%steepest == 0) return
-    limit%problem = 'no band wider than '//as_text(longest)//' m'
+    limit%problem = 'no band wider than '//as_text(longest)
     if (constants%stiffening == 'GFI' .and. curve%turns_back) then
       limit%row = 1
       limit%expected = '2 E G_f/f_t^2'

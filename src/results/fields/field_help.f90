@@ -58,7 +58,7 @@ contains
       text = page(table(i))
       return
     end if
-    text = "unknown field '"//wanted//"'"
+    text = "there is no field '"//wanted//"'; expected a name of keyway --fields"
     names = [character(longest_name) ::]
     do i = 1, size(table)
       names = [character(longest_name) :: names, table(i)%name]

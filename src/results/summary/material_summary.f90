@@ -85,22 +85,42 @@ contains
     type(test_summary), intent(in) :: tests(:)
     character(:), allocatable :: text
     character(20) :: name
-    character(120) :: line
     integer :: i
     text = 'test                 of      largest  at strain     smallest  at strain'// &
            '         work   dissipated'
     do i = 1, size(tests)
       associate (now => tests(i))
         name = now%name
-        write (line, '(a,1x,a,2(es13.5,es11.3),2es13.5)') name, stress_names(now%component), &
-          now%largest%stress, now%largest%strain, now%smallest%stress, now%smallest%strain, &
-          now%work, now%fracture + now%crushing
-        text = text//nl//trim(line)
+        text = text//nl//name//' '//stress_names(now%component)//columns_of(now%largest)// &
+               columns_of(now%smallest)//column('(es13.5e3)', now%work)// &
+               column('(es13.5e3)', now%fracture + now%crushing)
         if (.not. now%has_finished) text = text//'  stopped'
       end associate
     end do
     text = text//nl//'stress [Pa] of the component that is driven; work and dissipated [J/m3]'
   end function table_of_tests
+
+  !> Stress and strain of a peak in the table.
+  pure function columns_of(top) result(text)
+    type(peak), intent(in) :: top
+    character(:), allocatable :: text
+    text = column('(es13.5e3)', top%stress)//column('(es11.3e3)', top%strain)
+  end function columns_of
+
+  !> A number with an exponent of two digits, or of three: Fortran itself leaves out the E then.
+  pure function column(form, number) result(text)
+    character(*), intent(in) :: form !< (esW.De3), W two digits
+    real(rk), intent(in) :: number
+    character(:), allocatable :: text
+    integer :: width, i
+    read (form(4:5), *) width
+    allocate (character(width) :: text)
+    write (text, form) number
+    i = index(text, 'E') + 2 ! first digit of the exponent
+    if (i > 2) then
+      if (text(i:i) == '0') text = ' '//text(:i - 1)//text(i + 1:)
+    end if
+  end function column
 
   !> Writes job_material.json.
   subroutine write_test_summary(path, deck, tests, error)

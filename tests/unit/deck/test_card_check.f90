@@ -270,7 +270,8 @@ contains
                     lf//lf//'Example'//lf//'  *ELASTIC'//lf//'  22e9, 0.2', 'page')
     call describe_keyword(specs, 'CLOUD', text, is_known)
     call check(log,.not. is_known, 'unknown keyword')
-    call check_text(log, text, "unknown keyword '*CLOUD'; did you mean '*CLOAD'?", 'its message')
+    call check_text(log, text, "unknown keyword '*CLOUD'; expected a name of keyway "// &
+                    "--keywords; did you mean '*CLOAD'?", 'its message')
     text = list_keywords(specs)
     call check(log, index(text, 'MATERIAL'//lf//'  *ELASTIC                         '// &
                           'Linear elasticity (Eq. 1)'//lf) == 1, 'list')

@@ -72,7 +72,8 @@ def _displacement_plots(results: SiResults) -> list[dict[str, Any]]:
             for node, rows in list(_most(table, "node", "size").items())[:2]
             for k in (1, 2, 3)
         ]
-        title = f"Displacements of {name.removeprefix('node_')}, relative to the base"
+        of_set = results.set_of_table(name.removeprefix("node_"))
+        title = f"Displacements of {of_set}, relative to the base"
         found.append(_plot(title, "mm", curves))
     return found
 

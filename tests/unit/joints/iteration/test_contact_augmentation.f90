@@ -188,8 +188,8 @@ contains
     call check(log, allocated(error), 'stops')
     if (.not. allocated(error)) return
     call check(log, index(error%message, 'joint GROUND has slipped 0.0') == 1, 'names the joint')
-    call check(log, index(error%message, ' m at (1, 0, 0) at time 1.') > 0, 'names place and time')
-    call check(log, index(error%message, 'allow small sliding only, 0.02 m') > 0, &
+    call check(log, index(error%message, ' at (1, 0, 0) at time 1.') > 0, 'names place and time')
+    call check(log, index(error%message, 'allow small sliding only, 0.02 at') > 0, &
                'names what is allowed')
     ! From rest it moves by (pull - mu g) t^2/2.
     call check_close(log, now%step_time, sqrt(2.0_rk*reach/(pull - 0.1_rk*gravity)), 0.011_rk, &

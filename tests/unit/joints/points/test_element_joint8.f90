@@ -168,7 +168,7 @@ contains
     mesh%x(3, 13) = 0.25_rk
     call build_joint_points(mesh, [5, 6], .true., built, error)
     call check(log, allocated(error), 'nodes of a pair do not coincide')
-    call check(log, index(error%message, 'nodes 102 and 113 lie 2.500E-01 m apart') > 0, &
+    call check(log, index(error%message, 'nodes 102 and 113 lie 2.500E-01 apart') > 0, &
                error%message)
   end subroutine bad_pairs_are_named
 end program test_element_joint8

@@ -130,7 +130,7 @@ contains
     if (faults%num_warnings /= 1) return
     associate (said => faults%warnings(1)%problem)
       ! 2 E G_f/f_t^2 = 1.62591 m, sqrt(1.62591/6.504) 2.48 MPa = 1.23997 MPa
-      call check(log, index(said, 'at 1.23997e6 Pa: elements 17') > 0, said)
+      call check(log, index(said, 'at a strength of 1.23997e6: elements 17') > 0, said)
     end associate
   end subroutine lowers_strength
 

@@ -18,6 +18,8 @@ program test_material_path
   call hardening_bar(log)
   call softening_bar(log)
   call stress_beyond_peak(log)
+  call strain_that_snaps_back(log)
+  call softening_shear(log)
   call small_increments(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -146,6 +148,7 @@ contains
     law%num_state = 7
     law%slope = -20.0e9_rk
     test%name = 'PULL'
+    test%driven = 1
     test%legs = [bar_leg(300.0e6_rk, 30, .true.)]
     call follow_path(law, test, record, error)
     call check(log, allocated(error), 'the path ends')
@@ -154,7 +157,55 @@ contains
     call check(log, index(error%message, 'test PULL stops in leg 1, increment 21 of 30') == 1, &
                'where: '//error%message)
     call check(log, index(error%message, 'CONTROL=STRAIN') > 0, 'the way out')
+    test%driven = 0 ! GENERAL
+    call follow_path(law, test, record, error)
+    if (.not. allocated(error)) return
+    call check(log, index(error%message, '(E in place of S') > 0, 'the way out of GENERAL')
   end subroutine stress_beyond_peak
+
+  !> With a slope of -220 GPa, between -E and -3 G, a bar turns back at yield: a strain that grows
+  !> finds no stress. A strain is prescribed already, so the message speaks of LENGTH.
+  subroutine strain_that_snaps_back(log)
+    type(test_log), intent(inout) :: log
+    type(material_test) :: test
+    type(path_record) :: record
+    type(error_type), allocatable :: error
+    type(metal) :: law
+    law%num_state = 7
+    law%slope = -220.0e9_rk
+    test%name = 'PULL'
+    test%driven = 1
+    test%legs = [bar_leg(0.002_rk, 20, .false.)]
+    call follow_path(law, test, record, error)
+    call check(log, allocated(error), 'the path ends where it turns back')
+    if (.not. allocated(error)) return
+    call check(log, index(error%message, 'turns back here: take a smaller LENGTH') > 0, &
+               'the way out: '//error%message)
+    call check(log, index(error%message, 'CONTROL') == 0, 'a strain is prescribed already')
+  end subroutine strain_that_snaps_back
+
+  !> A message on a test in shear has gamma and S12; the yield stress in shear is 115.5 MPa.
+  subroutine softening_shear(log)
+    type(test_log), intent(inout) :: log
+    type(material_test) :: test
+    type(path_record) :: record
+    type(error_type), allocatable :: error
+    type(metal) :: law
+    law%num_state = 7
+    law%slope = -20.0e9_rk
+    test%name = 'SHEAR'
+    test%driven = 4
+    allocate (test%legs(1))
+    test%legs(1)%is_stress = .true.
+    test%legs(1)%target(4) = 150.0e6_rk
+    test%legs(1)%num_increments = 30
+    call follow_path(law, test, record, error)
+    call check(log, allocated(error), 'shear beyond the peak')
+    if (.not. allocated(error)) return
+    call check(log, index(error%message, '(gamma 12 0.001443') > 0 .and. &
+               index(error%message, ', S12 1.1547e8 before it)') > 0, &
+               'components of shear: '//error%message)
+  end subroutine softening_shear
 
   !> Increments are cut on request of a law; the rows are those of the test.
   subroutine small_increments(log)
