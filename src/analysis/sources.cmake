@@ -24,6 +24,7 @@ set(sources
   reduced/reduced_estimate.f90
   reduced/reduced_fields.f90
   reduced/reduced_increment.f90
+  reduced/reduced_massless.f90
   reduced/reduced_nodes.f90
   reduced/reduced_ports.f90
   reduced/reduced_rest.f90

@@ -80,7 +80,8 @@ def test_blocks_on_rock_without_mass(keyway, num_blocks, along, options):
     """Openings of all joints follow those of the full model, with as many modes as there are.
 
     With shapes measured by their mass, ten of these twelve models had openings that were off by far
-    or not numbers, or an end without equilibrium."""
+    or not numbers, or an end without equilibrium. With the rock in one static response with the
+    blocks openings were off by up to 3.4 %."""
     runs = [
         keyway(stack(num_blocks, along, shaken(text)), name=text.strip(", ") or "full")
         for text in ("", options)
@@ -90,6 +91,6 @@ def test_blocks_on_rock_without_mass(keyway, num_blocks, along, options):
         for run in runs
     )
     (found,) = runs[1].json["accuracy"]["reduced"].values()
-    assert found["estimated_error"] <= 0.04
-    assert np.abs(reduced - full).max() <= 0.04 * np.abs(full).max()
+    assert found["estimated_error"] <= 0.002
+    assert np.abs(reduced - full).max() <= 0.002 * np.abs(full).max()
     assert runs[1].json["steps"][1]["energy"]["error"] <= 1e-6

@@ -19,9 +19,12 @@ module reduced_integrator
   use reduced_estimate, only: estimate_error
   use reduced_fields, only: expand_motion
   use reduced_increment, only: load_factors, modal_forces, take_reduced_increment
+  use reduced_massless, only: has_massless
   use reduced_nodes, only: find_followed, followed_nodes
+  use reduced_ports, only: static_solvers
   use reduced_scheme, only: reduced_matrices
   use reduced_shapes, only: find_shapes
+  use solver_catalogue, only: make_solver, symmetric_solver
   use state_transfer, only: store_motion
   use step_equilibrium, only: make_equilibrium
   use step_loads, only: external_force, step_time, support
@@ -37,6 +40,7 @@ module reduced_integrator
     type(reduced_matrices) :: matrices !< of the present increment size
     type(followed_nodes) :: followed
     real(rk), allocatable :: force_norm(:) !< (loads) [N]
+    type(static_solvers) :: solvers !< the first one is that of `solids`, which has none then
   contains
     procedure :: open_step
     procedure :: start_increment
@@ -89,16 +93,32 @@ contains
     self%solids%solver%costs = results%costs
     call refuse_size(self%system, now, error)
     if (allocated(error)) return
+    call take_solvers(self, model, results, error)
+    if (allocated(error)) return
     call start_modal(self, model, plan, now)
     call build_model(self, model, plan, now, results, error)
     if (allocated(error)) return
-    call find_followed(plan, self%system, self%basis, now%motion%modal%start, self%solids%solver, &
+    call find_followed(plan, self%system, self%basis, now%motion%modal%start, self%solvers, &
                        self%followed, error)
     if (allocated(error) .or. now%increment > 0) return
     call open_account(model, self%system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call store_motion(self%system%numbers, now)
     call results%report_increment(model, now, error)
   end subroutine open_step
+
+  !> Takes the solver of the step, and makes another one for massless solids where there are some.
+  subroutine take_solvers(self, model, results, error)
+    class(reduced_method), intent(inout) :: self
+    type(problem), intent(in) :: model
+    class(listener), intent(in) :: results
+    type(error_type), allocatable, intent(out) :: error
+    call move_alloc(self%solids%solver%factor, self%solvers%whole)
+    self%solvers%costs = results%costs
+    if (.not. has_massless(model)) return
+    call make_solver(symmetric_solver, self%solvers%held, error, self%system%matrix%is_shared)
+    if (allocated(error)) return
+    call self%solvers%held%analyse(self%system%matrix, error)
+  end subroutine take_solvers
 
   !> Error: what the reduced model cannot hold and the reader of the deck cannot know.
   subroutine refuse_size(system, now, error)
@@ -227,11 +247,11 @@ contains
     fresh%start_traction = self%basis%start_traction
     fresh%starts_balanced = self%basis%starts_balanced
     fresh%shift = smallest_shift/plan%first_increment**2
-    call find_shapes(model, self%system, loads_of_shapes(self), wanted, self%solids%solver, &
-                     shapes, fresh%shift, error)
+    call find_shapes(model, self%system, loads_of_shapes(self), wanted, self%solvers, shapes, &
+                     fresh%shift, error)
     if (allocated(error)) return
     call results%costs%start('reduce', 'structure', 'solver')
-    call build_basis(self%system, plan%first_increment, shapes, self%solids%solver, fresh, error)
+    call build_basis(self%system, plan%first_increment, shapes, self%solvers, fresh, error)
     call results%costs%stop()
     self%basis = fresh
   end subroutine build_basis_of
@@ -288,7 +308,7 @@ contains
       modal%rate = [(dot(own%momentum(:n), basis%mode(:, k)), k=1, basis%num_modes)]
       modal%acceleration = modal_forces(basis, modal) &
                            + basis%path(size(basis%path, 1) - 1, :) ! forces that are not balanced
-      modal%port = [(0.0_rk, k=1, size(basis%path, 1))]
+      modal%port = [(0.0_rk, k=1, size(basis%residual, 2))]
       modal%port_rate = modal%port
       modal%port_acceleration = modal%port
       modal%rest = modal%port
@@ -362,8 +382,7 @@ contains
     call self%followed%store(now)
     if (.not. results%needs_motion(model, now)) return
     call results%costs%start('expand', 'structure', 'solver')
-    call expand_motion(self%basis, self%system, self%solids%solver, model%amplitudes, when, now, &
-                       error)
+    call expand_motion(self%basis, self%system, self%solvers, model%amplitudes, when, now, error)
     if (.not. allocated(error)) call store_motion(self%system%numbers, now)
     call results%costs%stop()
   end subroutine store_state

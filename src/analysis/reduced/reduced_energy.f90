@@ -14,7 +14,7 @@ module reduced_energy
   use mixed_products, only: mixed_times, mixed_transposed_times
   use problem_definition, only: problem
   use reduced_basis, only: reduced_model
-  use reduced_increment, only: find_rates, port_forces
+  use reduced_increment, only: find_rates, port_forces, to_parts
   implicit none
   private
   public :: add_reduced_work
@@ -41,7 +41,8 @@ contains
       viscous(:, 1) = times_vector(basis%damping, old%rate)
       viscous(:, 2) = times_vector(basis%damping, new%rate)
       damping = work(new%y - old%y, viscous(:, 1), viscous(:, 2)) &
-                + basis%residual_damping*work(new%rest - old%rest, old%port_rate, new%port_rate)
+                + work(new%rest - old%rest, basis%rest_damping*old%port_rate, &
+                       basis%rest_damping*new%port_rate)
       strain = stored_strain(basis, new) - stored_strain(basis, old)
       inertial = inertial_work(basis, operator, scheme, factors, before, after, viscous)
       energy%external = energy%external + external
@@ -65,10 +66,23 @@ contains
     type(hht), intent(in) :: scheme
     type(modal_motion), intent(in) :: old
     type(modal_motion), intent(inout) :: new
-    new%rest = mixed_times(basis%residual_read, new%port)
+    integer :: first, n
+    n = size(basis%residual_read, 1)
+    do first = 1, size(new%port), n
+      new%rest(first:first + n - 1) = &
+        mixed_times(basis%residual_read(:, first:first + n - 1), new%port(first:first + n - 1))
+    end do
     call find_rates(scheme, old%rest, old%rest_rate, old%rest_acceleration, new%rest, &
                     new%rest_rate, new%rest_acceleration)
   end subroutine find_response
+
+  !> Displacement of a port in the rest.
+  pure real(rk) function rest_at(basis, rest, row)
+    type(reduced_model), intent(in) :: basis
+    real(rk), intent(in) :: rest(:) !< (columns of P R P^T)
+    integer, intent(in) :: row !< port
+    rest_at = sum(rest(row::size(basis%path, 1)))
+  end function rest_at
 
   !> Work of the loads, those at the start of the step included.
   real(rk) function external_work(basis, old, new, factors)
@@ -84,8 +98,8 @@ contains
     step = new%y - old%y
     external_work = 0.0_rk
     do k = 1, size(mean)
-      row = size(old%rest) - size(mean) + k
-      external_work = external_work + mean(k)*(new%rest(row) - old%rest(row) &
+      row = size(basis%path, 1) - size(mean) + k
+      external_work = external_work + mean(k)*(rest_at(basis, new%rest - old%rest, row) &
                                                + dot_product(basis%path(row, :), step))
     end do
   end function external_work
@@ -96,17 +110,17 @@ contains
     type(reduced_model), intent(in) :: basis
     type(modal_motion), intent(in) :: modal
     integer :: last
-    last = size(modal%rest)
-    stored_strain = modal%rest(last) + sum(basis%path(last, :)*modal%y) &
+    last = size(basis%path, 1)
+    stored_strain = rest_at(basis, modal%rest, last) + sum(basis%path(last, :)*modal%y) &
                     + 0.5_rk*(sum(basis%lambda*modal%y**2) &
-                              + basis%residual_stiffness*sum(modal%port*modal%rest))
+                              + sum(basis%rest_stiffness*modal%port*modal%rest))
   end function stored_strain
 
   !> Kinetic energy.
   pure real(rk) function kinetic(basis, modal)
     type(reduced_model), intent(in) :: basis
     type(modal_motion), intent(in) :: modal
-    kinetic = 0.5_rk*(sum(modal%rate**2) + basis%residual_mass*sum(modal%port_rate*modal%rest_rate))
+    kinetic = 0.5_rk*(sum(modal%rate**2) + sum(basis%rest_mass*modal%port_rate*modal%rest_rate))
   end function kinetic
 
   !> Work of the inertia forces as the balance gives them, joints by their laws. At the start they
@@ -118,18 +132,18 @@ contains
     real(rk), intent(in) :: factors(:, :) !< (loads, 2)
     type(state), intent(in) :: before, after
     real(rk), intent(in) :: viscous(:, :) !< (modes, 2) damping forces at both ends
-    real(rk) :: traction(3, operator%num_points), force(size(basis%residual, 1))
+    real(rk) :: traction(3, operator%num_points), force(size(basis%path, 1))
     call gather_tractions(operator, after%joints, traction)
     force = port_forces(operator, scheme, factors, before%motion, traction)
     associate (old => before%motion%modal, new => after%motion%modal, &
-               bulk => 1.0_rk + scheme%alpha, beta => basis%residual_damping, &
-               share => basis%residual_stiffness)
+               bulk => 1.0_rk + scheme%alpha, beta => basis%rest_damping, &
+               share => basis%rest_stiffness)
       inertial_work = work(new%y - old%y, old%acceleration, &
                            scheme%alpha*(basis%lambda*old%y + viscous(:, 1)) &
                            - bulk*(basis%lambda*new%y + viscous(:, 2)) &
                            + mixed_transposed_times(basis%path_read, force)) &
-                      + work(new%rest - old%rest, basis%residual_mass*old%port_acceleration, &
-                             force - bulk*(share*new%port + beta*new%port_rate) &
+                      + work(new%rest - old%rest, basis%rest_mass*old%port_acceleration, &
+                             to_parts(basis, force) - bulk*(share*new%port + beta*new%port_rate) &
                              + scheme%alpha*(share*old%port + beta*old%port_rate))
     end associate
   end function inertial_work
@@ -141,9 +155,9 @@ contains
     type(modal_motion), intent(in) :: old, new
     excess = excess_of(new%y - old%y, old%acceleration, new%acceleration, old%acceleration, &
                        new%acceleration) &
-             + basis%residual_mass*excess_of(new%rest - old%rest, old%port_acceleration, &
-                                             new%port_acceleration, &
-                                             old%rest_acceleration, new%rest_acceleration)
+             + excess_of(new%rest - old%rest, basis%rest_mass*old%port_acceleration, &
+                         basis%rest_mass*new%port_acceleration, old%rest_acceleration, &
+                         new%rest_acceleration)
   contains
     !> For displacements, accelerations and inertia forces at both ends.
     pure real(rk) function excess_of(dx, a0, a1, force0, force1)

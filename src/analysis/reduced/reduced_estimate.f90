@@ -145,11 +145,16 @@ contains
     type(reduced_model), intent(in) :: basis
     type(state), intent(in) :: now
     real(rk) :: values(size(basis%probe))
-    associate (port => now%motion%modal%port)
-      values = matmul(basis%mode(basis%probe, :), now%motion%modal%y) &
-               + matmul(basis%load_shape(basis%probe, :), &
-                        port(size(port) - size(basis%load_shape, 2) + 1:))
-    end associate
+    integer :: part, num_ports, num_loads
+    num_ports = size(basis%path, 1)
+    num_loads = size(basis%force, 2)
+    values = matmul(basis%mode(basis%probe, :), now%motion%modal%y)
+    do part = 1, size(basis%residual, 2)/num_ports
+      values = values + matmul(basis%load_shape(basis%probe, (part - 1)*num_loads + 1: &
+                                                part*num_loads), &
+                               now%motion%modal%port(part*num_ports - num_loads + 1: &
+                                                     part*num_ports))
+    end do
   end function motion_of_probes
 
   !> The openings now, then the displacements of the probes.

@@ -2,11 +2,11 @@
 module reduced_fields
   use analysis_state, only: state
   use amplitudes, only: amplitude
-  use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use global_vectors, only: multiply
   use kinds, only: rk
   use reduced_basis, only: reduced_model, residual_response
+  use reduced_ports, only: static_solvers
   use state_transfer, only: sum_contact
   use step_loads, only: external_force, step_time
   use step_system, only: dam_system
@@ -17,17 +17,17 @@ module reduced_fields
 contains
 
   !> Fills displacements, rates and forces.
-  subroutine expand_motion(basis, system, solver, amplitudes, when, now, error)
+  subroutine expand_motion(basis, system, solvers, amplitudes, when, now, error)
     type(reduced_model), intent(in) :: basis
     type(dam_system), intent(in) :: system
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     type(amplitude), intent(in) :: amplitudes(:)
     type(step_time), intent(in) :: when
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: x(system%matrix%num_free, 3)
     associate (own => now%motion, modal => now%motion%modal, n => system%matrix%num_free)
-      call residual_response(system, solver, basis, &
+      call residual_response(system, solvers, basis, &
                              reshape([modal%port, modal%port_rate, modal%port_acceleration], &
                                      [size(modal%port), 3]), x, error)
       if (allocated(error)) return

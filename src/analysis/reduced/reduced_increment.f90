@@ -4,7 +4,8 @@
 !>   y''   + [(1 + alpha)(Lambda y + C y')_1 - alpha (..)_0] = (P Phi)^T p
 !>   mu w'' + [(1 + alpha)(w + beta w')_1    - alpha (..)_0] = p
 !>
-!> p are the forces of the ports: loads weighted as the bulk, joints as in the full model.
+!> p are the forces of the ports: loads weighted as the bulk, joints as in the full model. Where
+!> solids have no mass the rest has two parts, each with its w, mu and beta.
 module reduced_increment
   use analysis_state, only: modal_motion, motion, state
   use amplitudes, only: amplitude
@@ -22,7 +23,7 @@ module reduced_increment
   use step_plan, only: step_controls
   implicit none
   private
-  public :: load_factors, port_forces, modal_forces, take_reduced_increment, find_rates
+  public :: load_factors, port_forces, to_parts, modal_forces, take_reduced_increment, find_rates
 
 contains
 
@@ -68,6 +69,14 @@ contains
     force(size(traction) + 1:) = (1.0_rk + scheme%alpha)*factors(:, 2) - scheme%alpha*factors(:, 1)
   end function port_forces
 
+  !> The forces of the ports for each part of the rest.
+  pure function to_parts(basis, force) result(parts)
+    type(reduced_model), intent(in) :: basis
+    real(rk), intent(in) :: force(:) !< (ports)
+    real(rk) :: parts(size(basis%residual, 2))
+    parts = reshape(force, [size(parts)], pad=force)
+  end function to_parts
+
   !> Goes from `before` to `after`: modes, ports and joints. Without convergence `after` is invalid.
   subroutine take_reduced_increment(basis, matrices, model, controls, factors, before, after, &
                                     outcome)
@@ -80,7 +89,7 @@ contains
     type(state), intent(inout) :: after
     type(balance_outcome), intent(out) :: outcome
     real(rk), dimension(3, matrices%operator%num_points) :: traction, jump
-    real(rk) :: known(basis%num_modes), rest(size(basis%residual, 1)), moved(size(rest))
+    real(rk) :: known(basis%num_modes), rest(size(basis%residual, 2)), moved(size(basis%path, 1))
     call sum_known_forces(basis, matrices, before%motion%modal, known, rest)
     associate (start => before%motion%modal%start_traction, new => after%motion%modal, &
                operator => matrices%operator)
@@ -104,11 +113,11 @@ contains
   contains
     !> Modes and ports for given tractions at the end.
     subroutine solve_modes()
-      real(rk) :: force(size(rest))
+      real(rk) :: force(size(basis%path, 1))
       force = port_forces(matrices%operator, matrices%scheme, factors, before%motion, traction)
       after%motion%modal%y = times_vector(matrices%inverse, known &
                                           + mixed_transposed_times(basis%path_read, force))
-      after%motion%modal%port = (rest + force)/matrices%rest
+      after%motion%modal%port = (rest + to_parts(basis, force))/matrices%rest
     end subroutine solve_modes
   end subroutine take_reduced_increment
 
@@ -118,7 +127,7 @@ contains
     type(reduced_matrices), intent(in) :: matrices
     type(modal_motion), intent(in) :: old
     real(rk), intent(out) :: known(:) !< (modes)
-    real(rk), intent(out) :: rest(:) !< (ports)
+    real(rk), intent(out) :: rest(:) !< (columns of P R P^T)
     real(rk) :: predicted(size(known)), rate(size(known))
     real(rk), dimension(size(rest)) :: port, port_rate
     associate (scheme => matrices%scheme, bulk => 1.0_rk + matrices%scheme%alpha)
@@ -126,10 +135,9 @@ contains
       known = scheme%acceleration_of_x*predicted + scheme%alpha*basis%lambda*old%y &
               - times_vector(basis%damping, bulk*rate - scheme%alpha*old%rate)
       call predict(scheme, old%port, old%port_rate, old%port_acceleration, port, port_rate)
-      rest = basis%residual_mass*scheme%acceleration_of_x*port &
-             - bulk*basis%residual_damping*port_rate &
-             + scheme%alpha*(basis%residual_stiffness*old%port &
-                             + basis%residual_damping*old%port_rate)
+      rest = basis%rest_mass*scheme%acceleration_of_x*port &
+             - bulk*basis%rest_damping*port_rate &
+             + scheme%alpha*(basis%rest_stiffness*old%port + basis%rest_damping*old%port_rate)
     end associate
   end subroutine sum_known_forces
 

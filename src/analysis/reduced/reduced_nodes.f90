@@ -1,13 +1,12 @@
 !> The motion of a few printed nodes of a reduced model, without a solve in each increment.
 module reduced_nodes
   use analysis_state, only: state
-  use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use kinds, only: rk
   use node_dofs, only: num_directions, zero_vectors
   use print_kinds, only: prints_of_nodes
   use reduced_basis, only: reduced_model
-  use reduced_ports, only: rows_of, solve_blocks
+  use reduced_ports, only: rows_of, solve_blocks, static_solvers
   use step_plan, only: print_request, step
   use step_system, only: dam_system
   implicit none
@@ -19,7 +18,7 @@ module reduced_nodes
     integer, allocatable :: node(:)
     real(rk), allocatable :: start(:) !< (rows) displacement at the start of the step [m]
     real(rk), allocatable :: mode(:, :) !< (rows, modes) of Phi
-    real(rk), allocatable :: port(:, :) !< (rows, ports) of R P^T
+    real(rk), allocatable :: port(:, :) !< (rows, columns of P R P^T) of R P^T
   contains
     procedure :: store
   end type followed_nodes
@@ -39,15 +38,15 @@ contains
   end function is_followed
 
   !> Finds the rows of all nodes that are followed.
-  subroutine find_followed(plan, system, basis, start, solver, followed, error)
+  subroutine find_followed(plan, system, basis, start, solvers, followed, error)
     type(step), intent(in) :: plan
     type(dam_system), intent(in) :: system
     type(reduced_model), intent(in) :: basis
     real(rk), intent(in) :: start(:) !< (num_total) unknowns at the start of the step [m]
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     type(followed_nodes), intent(out) :: followed
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: u(:, :), response(:, :)
+    real(rk), allocatable :: u(:, :), response(:, :), massless(:, :)
     real(rk) :: unit(system%matrix%num_total)
     integer :: k, i, row, n
     n = system%matrix%num_free
@@ -55,7 +54,7 @@ contains
     associate (num_rows => num_directions*size(followed%node))
       allocate (followed%start(num_rows), response(n, num_rows))
       allocate (followed%mode(num_rows, basis%num_modes))
-      allocate (followed%port(num_rows, size(basis%path, 1)))
+      allocate (followed%port(num_rows, size(basis%residual, 2)))
     end associate
     u = zero_vectors(system%numbers%num_nodes)
     do k = 1, size(followed%node)
@@ -69,12 +68,22 @@ contains
         response(:, row) = unit(:n)
       end do
     end do
-    call solve_blocks(solver, response, error)
+    if (allocated(solvers%held)) then
+      massless = response
+      call solve_blocks(solvers%held, massless, error)
+      if (allocated(error)) return
+    end if
+    call solve_blocks(solvers%whole, response, error)
     if (allocated(error)) return
-    do row = 1, size(followed%start)
-      followed%port(row, :) = rows_of(system, basis%force, response(:, row)) &
-                              - matmul(basis%share, followed%mode(row, :))
-    end do
+    associate (port => followed%port, ports => size(basis%path, 1))
+      do row = 1, size(followed%start)
+        port(row, :ports) = rows_of(system, basis%force, response(:, row)) &
+                            - matmul(basis%share, followed%mode(row, :))
+        if (.not. allocated(massless)) cycle
+        port(row, ports + 1:) = rows_of(system, basis%force, massless(:, row))
+        port(row, :ports) = port(row, :ports) - port(row, ports + 1:)
+      end do
+    end associate
   end subroutine find_followed
 
   !> The nodes of all requests that are followed.

@@ -1,15 +1,26 @@
 !> The ports of a reduced model: the jumps at the points of joints, then the paths of the loads.
 module reduced_ports
-  use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use joint_compliance, only: find_compliance
   use joint_rows, only: num_rows
   use jump_block, only: extract_schur_block, jump_schur_block, schur_compliance
   use kinds, only: rk
+  use linear_solver, only: equation_solver
+  use run_ledger, only: ledger
   use step_system, only: dam_system
   implicit none
   private
-  public :: rows_of, forces_of, find_port_compliance, solve_blocks
+  public :: static_solvers, rows_of, forces_of, find_port_compliance, solve_blocks, solve_inertial
+  public :: sample_forces
+
+  !> The factors of a reduced model.
+  type :: static_solvers
+    class(equation_solver), allocatable :: whole !< of K + s M
+    !> Of K + h M with a large h, which holds all that has mass; not allocated where all solids have
+    !> mass
+    class(equation_solver), allocatable :: held
+    type(ledger) :: costs !< a copy that books in the ledger of the run
+  end type static_solvers
 
   integer, parameter :: block_size = 32 !< right-hand sides solved at once
 
@@ -32,6 +43,22 @@ contains
     end do
   end function rows_of
 
+  !> Some forces of the ports: on joints, or those of the loads without joints.
+  pure function sample_forces(system, num_loads, num_samples) result(force)
+    type(dam_system), intent(in) :: system
+    integer, intent(in) :: num_loads, num_samples
+    real(rk), allocatable :: force(:, :) !< (ports, samples)
+    integer :: i, k, n
+    n = num_rows(system%operator%num_points)
+    allocate (force(n + num_loads, num_samples), source=0.0_rk)
+    do k = 1, num_samples
+      do i = 1, n
+        force(i, k) = system%operator%area(1 + (i - 1)/3)*sin(1.7_rk*i*k + k)
+      end do
+      if (n == 0) force(1 + mod(k - 1, max(1, num_loads - 2)), k) = 1.0_rk
+    end do
+  end function sample_forces
+
   !> Forces of the ports on the free unknowns.
   function forces_of(system, loads, rows) result(force)
     type(dam_system), intent(in) :: system
@@ -48,9 +75,9 @@ contains
   end function forces_of
 
   !> P (K + s M)^-1 P^T, and the responses to the loads.
-  subroutine find_port_compliance(system, solver, force, shape, compliance, error)
+  subroutine find_port_compliance(system, factor, force, shape, compliance, error)
     type(dam_system), intent(in) :: system
-    class(equilibrium_solver), intent(inout) :: solver
+    class(equation_solver), intent(inout) :: factor
     real(rk), intent(in) :: force(:, :) !< (num_total, loads) [N]
     real(rk), allocatable, intent(out) :: shape(:, :) !< (num_free, loads) responses [m]
     real(rk), allocatable, intent(out) :: compliance(:, :) !< (ports, ports) [m/N]
@@ -58,13 +85,13 @@ contains
     real(rk), allocatable :: joints(:, :)
     integer :: k, n
     n = num_rows(system%operator%num_points)
-    call find_open_compliance(system, solver, joints, error)
+    call find_open_compliance(system, factor, joints, error)
     if (allocated(error)) return
     associate (num_loads => size(force, 2))
       allocate (compliance(n + num_loads, n + num_loads))
       compliance(:n, :n) = joints
       shape = force(:system%matrix%num_free, :)
-      call solve_blocks(solver, shape, error)
+      call solve_blocks(factor, shape, error)
       if (allocated(error)) return
       do k = 1, num_loads
         compliance(:, n + k) = rows_of(system, force, shape(:, k))
@@ -74,9 +101,9 @@ contains
   end subroutine find_port_compliance
 
   !> B (K + s M)^-1 B^T.
-  subroutine find_open_compliance(system, solver, compliance, error)
+  subroutine find_open_compliance(system, factor, compliance, error)
     type(dam_system), intent(in) :: system
-    class(equilibrium_solver), intent(inout) :: solver
+    class(equation_solver), intent(inout) :: factor
     real(rk), allocatable, intent(out) :: compliance(:, :) !< (rows, rows) [m/N]
     type(error_type), allocatable, intent(out) :: error
     type(jump_schur_block) :: jumps
@@ -85,19 +112,35 @@ contains
       allocate (compliance(0, 0))
       return
     end if
-    call extract_schur_block(solver%factor, system%operator, system%matrix, jumps)
+    call extract_schur_block(factor, system%operator, system%matrix, jumps)
     if (jumps%is_there .and. .not. jumps%top%is_there) then
       call schur_compliance(jumps, system%operator, compliance, place)
       compliance = compliance(place, place)
     else
-      call find_compliance(solver%factor, system%operator, system%matrix%num_free, compliance, &
+      call find_compliance(factor, system%operator, system%matrix%num_free, compliance, &
                            error)
     end if
   end subroutine find_open_compliance
 
+  !> Responses to forces but for those of massless solids on held ones with mass, in place.
+  subroutine solve_inertial(solvers, columns, error)
+    type(static_solvers), intent(inout) :: solvers
+    real(rk), intent(inout) :: columns(:, :) !< (num_free, columns)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: massless(:, :)
+    if (allocated(solvers%held)) then
+      massless = columns
+      call solve_blocks(solvers%held, massless, error)
+      if (allocated(error)) return
+    end if
+    call solve_blocks(solvers%whole, columns, error)
+    if (allocated(error)) return
+    if (allocated(massless)) columns = columns - massless
+  end subroutine solve_inertial
+
   !> Solves for all columns, in place.
-  subroutine solve_blocks(solver, columns, error)
-    class(equilibrium_solver), intent(inout) :: solver
+  subroutine solve_blocks(factor, columns, error)
+    class(equation_solver), intent(inout) :: factor
     real(rk), intent(inout) :: columns(:, :) !< (num_free, columns)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
@@ -105,7 +148,7 @@ contains
     do first = 1, size(columns, 2), block_size
       last = min(first + block_size - 1, size(columns, 2))
       b = columns(:, first:last)
-      call solver%factor%solve(b, error)
+      call factor%solve(b, error)
       if (allocated(error)) return
       columns(:, first:last) = b
     end do

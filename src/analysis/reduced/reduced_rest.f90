@@ -7,11 +7,10 @@
 module reduced_rest
   use column_products, only: multiply_columns
   use dense_products, only: times, transposed_times
-  use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use kinds, only: rk
   use pivoted_cholesky, only: factorise_kept, pivoted_factor, solve_half, solve_rest
-  use reduced_ports, only: forces_of, rows_of, solve_blocks
+  use reduced_ports, only: forces_of, rows_of, solve_blocks, solve_inertial, static_solvers
   use step_system, only: dam_system
   implicit none
   private
@@ -32,11 +31,11 @@ contains
 
   !> Finds S from its products: S^T K Psi = P Psi - (P K^-1 M Psi) own and
   !> S^T K S = P K^-1 P^T - (P K^-1 M Psi) (P Psi)^T - S^T K Psi (P K^-1 M Psi)^T.
-  subroutine find_rest(system, force, compliance, solver, shapes, own, rest, error)
+  subroutine find_rest(system, force, compliance, solvers, shapes, own, rest, error)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: force(:, :) !< (num_total, loads) [N]
     real(rk), intent(in) :: compliance(:, :) !< (ports, ports) P K^-1 P^T [m/N]
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     real(rk), intent(in) :: shapes(:, :) !< (num_free, shapes) Psi
     real(rk), intent(in) :: own(:, :) !< (shapes, shapes) Psi^T K Psi
     type(static_rest), intent(inout) :: rest !< with the port that is left out
@@ -48,7 +47,7 @@ contains
     allocate (work, mold=shapes)
     allocate (rest%moved, mold=path)
     call multiply_columns(system%mass_pattern, system%mass_entries, shapes, work)
-    call solve_blocks(solver, work, error)
+    call solve_blocks(solvers%whole, work, error)
     if (allocated(error)) return
     do k = 1, size(shapes, 2)
       path(:, k) = rows_of(system, force, shapes(:, k))
@@ -78,11 +77,11 @@ contains
 
   !> Makes the shapes orthogonal to S with K: Psi - S (S^T K S)^-1 S^T K Psi. `own` is their
   !> stiffness, before and afterwards.
-  subroutine separate_shapes(system, force, rest, solver, shapes, own, error)
+  subroutine separate_shapes(system, force, rest, solvers, shapes, own, error)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: force(:, :) !< (num_total, loads) [N]
     type(static_rest), intent(in) :: rest
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     real(rk), intent(inout) :: shapes(:, :) !< (num_free, shapes)
     real(rk), intent(inout) :: own(:, :) !< (shapes, shapes)
     type(error_type), allocatable, intent(out) :: error
@@ -91,17 +90,17 @@ contains
     call solve_half(rest%factor, part)
     own = own - transposed_times(part, part)
     call solve_rest(rest%factor, part)
-    call respond(system, force, rest, solver, part, shapes, response, error)
+    call respond(system, force, rest, solvers, part, shapes, response, error)
     if (.not. allocated(error)) shapes = shapes - response
   end subroutine separate_shapes
 
   !> R P^T f for each column f: displacements of the rest. The shapes are those that S was found
   !> with.
-  subroutine rest_response(system, force, rest, solver, shapes, port, x, error)
+  subroutine rest_response(system, force, rest, solvers, shapes, port, x, error)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: force(:, :) !< (num_total, loads) [N]
     type(static_rest), intent(in) :: rest
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     real(rk), intent(in) :: shapes(:, :) !< (num_free, shapes)
     real(rk), intent(in) :: port(:, :) !< (ports, columns) f
     real(rk), allocatable, intent(out) :: x(:, :) !< (num_free, columns)
@@ -110,15 +109,15 @@ contains
     part = times(rest%seen, port)
     call solve_half(rest%factor, part)
     call solve_rest(rest%factor, part)
-    call respond(system, force, rest, solver, part, shapes, x, error)
+    call respond(system, force, rest, solvers, part, shapes, x, error)
   end subroutine rest_response
 
   !> S_k c = K^-1 P^T c - Psi (P K^-1 M Psi)^T c for each column c.
-  subroutine respond(system, force, rest, solver, part, shapes, x, error)
+  subroutine respond(system, force, rest, solvers, part, shapes, x, error)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: force(:, :) !< (num_total, loads) [N]
     type(static_rest), intent(in) :: rest
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     real(rk), intent(in) :: part(:, :) !< (kept, columns) c
     real(rk), intent(in) :: shapes(:, :) !< (num_free, shapes)
     real(rk), allocatable, intent(out) :: x(:, :) !< (num_free, columns)
@@ -131,7 +130,7 @@ contains
     do k = 1, size(part, 2)
       x(:, k) = forces_of(system, force, rows(:, k))
     end do
-    call solve_blocks(solver, x, error)
+    call solve_inertial(solvers, x, error)
     if (.not. allocated(error)) x = x - times(shapes, transposed_times(rest%moved, rows))
   end subroutine respond
 end module reduced_rest

@@ -36,7 +36,7 @@ module reduced_scheme
     type(hht) :: scheme
     type(jump_operator) :: operator
     real(rk), allocatable :: inverse(:, :) !< (modes, modes) Z [1/(1/s2)]
-    real(rk) :: rest = 1.0_rk !< K_eff of the rest over its stiffness
+    real(rk), allocatable :: rest(:) !< (columns of P R P^T) K_eff of the rest over its stiffness
     real(rk), allocatable :: compliance(:, :) !< (rows, rows) C [m/N]
     !> (rows) jumps that the tractions at the start of the step prevent, C w area t [m]
     real(rk), allocatable :: held_jump(:)
@@ -60,12 +60,12 @@ contains
     self%operator = operator
     if (operator%num_points > few_points) call use_many_threads(levels)
     call invert_modes(basis, scheme, self%inverse)
-    self%rest = basis%residual_mass*scheme%acceleration_of_x &
-                + (1.0_rk + scheme%alpha)*(basis%residual_stiffness &
-                                           + scheme%velocity_of_x*basis%residual_damping)
+    self%rest = basis%rest_mass*scheme%acceleration_of_x &
+                + (1.0_rk + scheme%alpha)*(basis%rest_stiffness &
+                                           + scheme%velocity_of_x*basis%rest_damping)
     jump = basis%path(:num_rows(operator%num_points), :)
     self%compliance = times(jump, times(self%inverse, transpose(jump)))
-    self%compliance = self%compliance + basis%residual(:size(jump, 1), :size(jump, 1))/self%rest
+    call add_rest(basis, self%rest, self%compliance)
     self%held_jump = times_vector(self%compliance, &
                                   scheme%joint_weight*force_of(operator, basis%start_traction))
     if (operator%num_points > 0) call close_joints(self, joints, operator)
@@ -90,6 +90,21 @@ contains
     call factorise_dense(matrix, factor)
     call solve_factored(factor, inverse)
   end subroutine invert_modes
+
+  !> Adds what the rest gives to C.
+  subroutine add_rest(basis, rest, compliance)
+    type(reduced_model), intent(in) :: basis
+    real(rk), intent(in) :: rest(:) !< (columns of P R P^T) K_eff over the stiffness
+    real(rk), intent(inout) :: compliance(:, :) !< (rows, rows) [m/N]
+    integer :: first, column
+    do first = 0, size(rest) - 1, size(basis%residual, 1)
+      do column = 1, size(compliance, 2)
+        compliance(:, column) = compliance(:, column) &
+                                + basis%residual(:size(compliance, 1), first + column) &
+                                /rest(first + column)
+      end do
+    end do
+  end subroutine add_rest
 
   !> G and what the iteration on joints needs beside it.
   subroutine close_joints(self, joints, operator)

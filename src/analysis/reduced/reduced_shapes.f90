@@ -8,13 +8,13 @@
 module reduced_shapes
   use column_products, only: multiply_columns
   use dense_products, only: subtract_times, transposed_times
-  use equilibrium, only: equilibrium_solver
   use errors, only: error_type
   use global_vectors, only: dot
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
   use kinds, only: rk
   use problem_definition, only: problem
+  use reduced_ports, only: static_solvers
   use shape_modes, only: find_shape_modes
   use step_system, only: dam_system
   implicit none
@@ -31,14 +31,14 @@ module reduced_shapes
 
 contains
 
-  !> Finds the shapes, orthonormal with K and a small shift. The solver then holds the factor of
-  !> K + s M.
-  subroutine find_shapes(model, system, loads, num_wanted, solver, shapes, shift, error)
+  !> Finds the shapes, orthonormal with K and a small shift. The solver `whole` then
+  !> holds the factor of K + s M.
+  subroutine find_shapes(model, system, loads, num_wanted, solvers, shapes, shift, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: loads(:, :) !< (num_free, loads) [N]
     integer, intent(in) :: num_wanted
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     real(rk), allocatable, intent(out) :: shapes(:, :) !< (num_free, shapes)
     real(rk), intent(inout) :: shift !< s, on entry the smallest one [1/s2]
     type(error_type), allocatable, intent(out) :: error
@@ -56,14 +56,14 @@ contains
       if (state == 2) k_ref(2:3, :) = 0.0_rk
       if (state > 1) call system%operator%add_stiffness(closed_tangent(k_ref), system%matrix, &
                                                         values)
-      call solver%costs%start('factor', 'structure', 'solver')
-      call solver%factor%factorise(system%matrix, values, error)
-      call solver%costs%stop()
+      call solvers%costs%start('factor', 'structure', 'solver')
+      call solvers%whole%factorise(system%matrix, values, error)
+      call solvers%costs%stop()
       if (allocated(error)) return
-      call solver%costs%start('solve', 'shapes', 'solver')
-      call add_krylov(system, measure, loads, (num_wanted - num_shapes)/state, solver, shapes, &
+      call solvers%costs%start('solve', 'shapes', 'solver')
+      call add_krylov(system, measure, loads, (num_wanted - num_shapes)/state, solvers, shapes, &
                       num_shapes, error)
-      call solver%costs%stop()
+      call solvers%costs%stop()
       if (allocated(error)) return
       if (state > 1 .and. state == num_states) then
         shift = lowest_frequency(system, values, shapes(:, :num_shapes)) - smallest
@@ -87,12 +87,12 @@ contains
   end function lowest_frequency
 
   !> Adds shapes of one state of the joints.
-  subroutine add_krylov(system, measure, loads, num_new, solver, shapes, num_shapes, error)
+  subroutine add_krylov(system, measure, loads, num_new, solvers, shapes, num_shapes, error)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: measure(:) !< values of the stiffness that measures shapes
     real(rk), intent(in) :: loads(:, :) !< (num_free, loads) [N]
     integer, intent(in) :: num_new
-    class(equilibrium_solver), intent(inout) :: solver
+    type(static_solvers), intent(inout) :: solvers
     real(rk), intent(inout), contiguous :: shapes(:, :)
     integer, intent(inout) :: num_shapes
     type(error_type), allocatable, intent(out) :: error
@@ -102,7 +102,7 @@ contains
     force = loads
     do while (num_shapes < last .and. size(force, 2) > 0)
       call move_alloc(force, block)
-      call solver%factor%solve(block, error)
+      call solvers%whole%solve(block, error)
       if (allocated(error)) return
       call orthonormalise(system, measure, shapes(:, :num_shapes), block)
       num_taken = min(size(block, 2), last - num_shapes)
