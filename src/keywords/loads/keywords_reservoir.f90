@@ -68,13 +68,9 @@ contains
     end if
     if (this%real('LEVEL') <= this%real('BED')) then
       call this%fault_parameter(faults, 'LEVEL', "found '"//this%text('LEVEL')//"'", &
-<<<<<<< HEAD
-                                'a level above BED, '//this%text('BED')//' m; to empty '// &
+                                'a level above BED, '//this%text('BED')//'; to empty '// &
                                 'a reservoir of an earlier step give its card again with '// &
                                 'HYDROSTATIC=NO')
-=======
-                                'a level above BED, '//this%text('BED'))
->>>>>>> fixD
       return
     end if
     lake%kind = 'reservoir'
