@@ -83,3 +83,35 @@ def test_longest_brick(keyway, energy):
     run = keyway(too_long, "--check", code=2, name="long")
     assert "element 1 is " in run.stderr
     assert float(run.stderr.split("at most ")[1].split()[0]) == pytest.approx(longest, rel=1e-5)
+
+
+def crushed_and_torn(depth: float, tension: float, recovery: str) -> str:
+    """A brick of 0.5 x depth x 0.5 with free sides, under a tension [Pa] along y, that is crushed
+    along x and then torn along x."""
+    size = np.array([0.5, depth, 0.5])
+    lines = torn_brick(size, 0, energy=200.0).split("\n*STEP")[0]
+    lines = lines.replace("PLASTICITY\n32.5", f"PLASTICITY, RECOVERY={recovery}\n32.5")
+    lines = lines.replace("30e6, 0.", "12e6, 0.\n20e6, 0.25e-3\n25e6, 1e-3")
+    lines += "\n*NSET, NSET=FAR\n3, 4, 7, 8\n*BOUNDARY\n"
+    lines += "".join(f"{n}, 2, 2\n" for n in (1, 2, 5, 6))
+    load = f"*CLOAD\nFAR, 2, {tension * 0.25 / 4.0!r}\n"
+    for name, sizes, end in (("CRUSH", "0.1, 1., 1e-8, 0.1", -0.5e-3), ("TEAR", TEARING, 0.3e-3)):
+        lines += f"*STEP, NAME={name}, INC=1000\n*STATIC\n{sizes}\n{load}"
+        lines += f"*BOUNDARY\nPULLED, 1, 1, {end!r}\n*EL PRINT, ELSET=BRICK\nS, SDV\n*END STEP\n"
+    return lines
+
+
+TEARING = "0.005, 1., 1e-8, 0.005"
+
+
+@pytest.mark.parametrize("recovery", ["ENERGY", "LEE-FENVES"])
+@pytest.mark.parametrize("depth", [0.25, 1.5])
+def test_crack_of_a_crushed_brick(keyway, depth, recovery):
+    """A lateral tension of 1 Pa while the brick is crushed does not choose the width of the crack
+    that tears it later: 0.5 m along x, not the depth. 1 %: increments of 0.5 % of the path."""
+    run = keyway(crushed_and_torn(depth, 1.0, recovery))
+    steps = run.json["steps"]
+    torn = steps[1]["energy"]["fracture"] - steps[0]["energy"]["fracture"]
+    assert run.csv("el_BRICK")["SDV11"][-1] == pytest.approx(0.5, rel=1e-9)
+    # The plastic strain of crushing is not a crack: the residual strength does no more than 1e-3.
+    assert torn / (0.5 * depth) == pytest.approx(200.0, rel=0.01)

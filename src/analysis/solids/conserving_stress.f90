@@ -167,7 +167,7 @@ contains
     logical :: dissipates(part%points%num_points)
     integer :: k, p
     gradient = new%stress
-    dissipates = sum(new%energy(parts(2:), :), 1) > sum(old%energy(parts(2:), :), 1)
+    dissipates = abs(sum(new%energy(parts(2:), :) - old%energy(parts(2:), :), 1)) > 0.0_rk
     if (.not. any(dissipates)) return
     without_tangent = time
     without_tangent%tangent = no_tangent

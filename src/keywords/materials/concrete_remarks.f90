@@ -72,8 +72,9 @@ contains
     if (given%constants%stiffening /= 'STRAIN') return
     as_openings = given%constants
     as_openings%stiffening = 'DISPLACEMENT' ! of a band 1 m wide
+    if (allocated(as_openings%tension_damage)) deallocate (as_openings%tension_damage)
     call find_longest_band(as_openings, longest, limit)
-    if (longest >= 1.0_rk .or. limit%keyword /= stiffening_table) return
+    if (longest >= 1.0_rk) return
     call model%cards(given%stiffening%card)%warn( &
       faults, 'the stress falls by more than E times the increase of inelastic strain in row '// &
       as_text(limit%row)//': a test under strain control skips this part of the table')

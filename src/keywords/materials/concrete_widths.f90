@@ -1,7 +1,7 @@
 !> Checks the length of concrete elements against the longest crack band (theory.md, (11.12)).
 module concrete_widths
   use concrete_request, only: concrete_cards
-  use damage_checks, only: find_longest_band, stiffening_table, table_fault
+  use damage_checks, only: find_longest_band, rounding, stiffening_table, table_fault
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_sizes, only: measure_widths
@@ -13,8 +13,6 @@ module concrete_widths
   implicit none
   private
   public :: check_widths
-
-  real(rk), parameter :: rounding = 1.0e-9_rk !< relative tolerance of the comparison of lengths
 
 contains
 
@@ -71,7 +69,7 @@ contains
                 '(snap-back)'
     else
       card = given%tension_damage%card
-      remedy = '; or a smaller damage'//remedy
+      remedy = '; or a smaller damage, in this row or in new rows before it'//remedy
       problem = problem//'in it the plastic strain opening/length - d/(1 - d) sigma/E '// &
                 'decreases'
     end if

@@ -4,7 +4,8 @@ module finish_concrete
   use concrete_remarks, only: describe_concrete, warn_of_constants
   use concrete_widths, only: check_widths
   use damage_checks, only: compression_damage_table, find_longest_band, find_table_faults, &
-                           hardening_table, stiffening_table, table_fault, tension_damage_table
+                           hardening_table, rounding, stiffening_table, table_fault, &
+                           tension_damage_table
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
   use kinds, only: rk
@@ -138,6 +139,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(table_fault) :: limit
+    character(:), allocatable :: problem
     real(rk) :: longest
     associate (test => model%problem%tests(number), given => self%given, &
                place => model%cards(model%test_origin(number)%card))
@@ -149,16 +151,25 @@ contains
                         'LENGTH, the side of an element [m]')
       end if
       call find_longest_band(given%constants, longest, limit)
-      if (test%length <= longest) return
+      if (test%length <= longest*(1.0_rk + rounding)) return
       if (given%constants%lowers_strength) then
         call place%warn(faults, 'in a length of '//as_text(test%length)//' the concrete '// &
                         'cracks at a lower strength, with the same energy', &
                         'at most '//as_text(longest)//' for its own strength')
         return
       end if
+<<<<<<< HEAD
       call place%fault_parameter(faults, 'LENGTH', 'the concrete snaps back in a length of '// &
                                  as_text(test%length), 'at most '//as_text(longest)//': '// &
                                  limit%expected)
+=======
+      problem = 'the concrete snaps back in a length of '
+      if (limit%keyword == tension_damage_table) then
+        problem = 'the plastic strain decreases in a length of '
+      end if
+      call place%fault_parameter(faults, 'LENGTH', problem//as_text(test%length)//' m', &
+                                 'at most '//as_text(longest)//' m: '//limit%expected)
+>>>>>>> fixC
     end associate
   end subroutine check_test
 

@@ -6,7 +6,7 @@ module damage_checks
   use write_text, only: as_text
   implicit none
   private
-  public :: table_fault, find_table_faults, find_longest_band
+  public :: table_fault, find_table_faults, find_longest_band, rounding
   public :: stiffening_table, tension_damage_table, hardening_table, compression_damage_table
 
   !> The tables, by their keywords.
@@ -78,8 +78,8 @@ contains
     else
       limit%keyword = tension_damage_table
       limit%row = row_of(constants%tension_damage, curve%abscissa(curve%steepest))
-      limit%expected = 'E times the opening over the increase of d/(1 - d) sigma from the row '// &
-                       'before'
+      limit%expected = 'E over the steepest slope of d/(1 - d) sigma over the opening, sigma '// &
+                       'and d straight from the row before'
     end if
   end subroutine find_longest_band
 

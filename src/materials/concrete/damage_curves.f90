@@ -9,14 +9,14 @@
 !>
 !> With damage c is nonlinear in w, so that a curve linear in plastic strain is not linear in the
 !> opening, and the energy of a crack would depend on l. Curves over openings therefore have knots
-!> between the rows, on straight lines over w.
+!> between the rows, on straight lines over w. All knots limit the width of the band.
 module damage_curves
   use damage_constants, only: concrete_constants
   use kinds, only: rk
   implicit none
   private
   public :: strength_curve, curve_value, make_tension_curve, make_compression_curve
-  public :: place_knots, value_of_curve, row_below, smallest_strength
+  public :: place_knots, value_of_curve, row_below, noticeable_strain, smallest_strength
 
   !> Smallest strength of a curve, as a fraction of the first. At zero strength beta of Eq. 23 is
   !> undefined and the yield surface encloses nothing. The extra energy of a crack is at most a
@@ -30,6 +30,9 @@ module damage_curves
   !> linear softening to zero with a final damage of 0.9, in half the widest band, the error of the
   !> dissipated energy is 33 % with two rows alone, and 0.1 % with these knots.
   integer, parameter :: knots_over_unit = 32
+  !> A crack counts as open from this share of the opening G/f_t, with the area G under the curve.
+  !> It has then dissipated at most this share of G, unless the curve rises above f_t.
+  real(rk), parameter :: noticeable_share = 1.0e-3_rk
 
   !> Rows of strength and damage tables, over the abscissa of the deck.
   type :: strength_curve
@@ -40,8 +43,12 @@ module damage_curves
     real(rk) :: longest = huge(1.0_rk) !< widest admissible band [m]
     !> Widest band in which the plastic strain increases from knot to knot, by more than least [m]
     real(rk) :: widest_regular = 0.0_rk
-    integer :: steepest = 0 !< the row that limits the band
+    integer :: steepest = 0 !< the knot that limits the band
     logical :: turns_back = .false. !< in a wider band the strain would decrease
+    !> Over openings: the row below the opening of a noticeable crack, and the part of the interval
+    !> above it; 0 without
+    integer :: noticeable_row = 0
+    real(rk) :: noticeable_part = 0.0_rk
   end type strength_curve
 
   !> The curve at a plastic strain, with derivatives.
@@ -96,9 +103,10 @@ contains
     end if
     call find_recoverable(curve, young)
     if (has_openings) then
-      call limit_band(curve, young)
       if (allocated(damage)) call add_knots(curve)
       call find_recoverable(curve, young)
+      call limit_band(curve, young)
+      call find_noticeable(curve)
     end if
     call find_regular(curve)
   end subroutine unite_rows
@@ -144,8 +152,7 @@ contains
     integer :: parts(2:size(curve%abscissa)) !< of the interval before each row
     real(rk), dimension(size(curve%abscissa)) :: abscissa, strength, damage
     real(rk) :: share, change
-    integer :: i, k, knot, steepest
-    steepest = curve%steepest
+    integer :: i, k, knot
     abscissa = curve%abscissa
     strength = curve%strength
     damage = curve%damage
@@ -168,9 +175,32 @@ contains
         curve%strength(knot) = mix(strength(i - 1:i), share)
         curve%damage(knot) = mix(damage(i - 1:i), share)
       end do
-      if (i == steepest) curve%steepest = knot
     end do
   end subroutine add_knots
+
+  !> Finds where a crack has opened noticeably (see noticeable_share).
+  pure subroutine find_noticeable(curve)
+    type(strength_curve), intent(inout) :: curve
+    real(rk) :: opening
+    integer :: n
+    n = size(curve%abscissa)
+    if (n == 1) return
+    associate (w => curve%abscissa, s => curve%strength)
+      opening = noticeable_share*0.5_rk/s(1)*sum((s(2:) + s(:n - 1))*(w(2:) - w(:n - 1)))
+      curve%noticeable_row = min(count(w <= opening), n - 1)
+      curve%noticeable_part = (opening - w(curve%noticeable_row)) &
+                              /(w(curve%noticeable_row + 1) - w(curve%noticeable_row))
+    end associate
+  end subroutine find_noticeable
+
+  !> Plastic strain where a crack has opened noticeably.
+  pure real(rk) function noticeable_strain(curve, knots) result(strain)
+    type(strength_curve), intent(in) :: curve
+    real(rk), intent(in) :: knots(:) !< from place_knots
+    strain = 0.0_rk
+    if (curve%noticeable_row == 0) return
+    strain = mix(knots(curve%noticeable_row:curve%noticeable_row + 1), curve%noticeable_part)
+  end function noticeable_strain
 
   !> Linear interpolation between two values.
   pure real(rk) function mix(ends, share)
@@ -196,9 +226,8 @@ contains
   end function value_of_table
 
   !> Widest crack band of a curve over openings [m]. In a wider band the strain w/l + sigma/E would
-  !> decrease from one row to the next (snap-back), or the plastic strain would decrease
-  !> (paper_notes.md, 11). For linear softening without damage the limit is 2 E G_f/f_t^2. The rows
-  !> alone decide; the knots between are less restrictive.
+  !> decrease from one knot to the next (snap-back), or the plastic strain would decrease
+  !> (paper_notes.md, 11). For linear softening without damage the limit is 2 E G_f/f_t^2.
   pure subroutine limit_band(curve, young)
     type(strength_curve), intent(inout) :: curve
     real(rk), intent(in) :: young !< E_0 [Pa]

@@ -15,6 +15,9 @@ module damage_energy
   !> Crushing starts at this fraction of the strength in compression, and is full at the strength.
   real(rk), parameter :: start_of_crushing = 0.95_rk
   integer, parameter :: num_parts = 4 !< of a path, for the mean of energies on it
+  !> The square of a change of strain counts this fraction of the energies more, as in (12.6): their
+  !> difference is round-off where it is smaller.
+  real(rk), parameter :: smallest_square = 1.0e-10_rk
 
   !> Plastic flow and damage of an increment.
   type :: flow_path
@@ -56,7 +59,7 @@ contains
   !> Work of the plastic strain, and energy released by damage at constant weight of recovery. The
   !> stress of the increment is the mean of onset and end. If its work is negative (reversal within
   !> a large increment), the stress at the end is taken, whose work is not negative (see
-  !> largest_safe_dilation).
+  !> largest_safe_dilation). With viscosity the plastic strain lags, and its work is what it is.
   pure function dissipated_work(model, path) result(work)
     type(concrete_model), intent(in) :: model
     type(flow_path), intent(in) :: path
@@ -65,36 +68,71 @@ contains
     associate (damages => path%damages)
       intact = 1.0_rk - 0.5_rk*(damages(1) + damages(2))
       work(1) = intact*0.5_rk*dot_product(path%onset + path%finish, path%flow)
-      if (work(1) < 0.0_rk) work(1) = (1.0_rk - damages(2))*dot_product(path%finish, path%flow)
+      if (work(1) < 0.0_rk .and. model%viscosity <= 0.0_rk) then
+        work(1) = (1.0_rk - damages(2))*dot_product(path%finish, path%flow)
+      end if
       work(2) = 0.5_rk*(damages(2) - damages(1)) &
                 *(undamaged_energy(model, path%onset) + undamaged_energy(model, path%finish))
     end associate
   end function dissipated_work
 
   !> The same with RECOVERY=ENERGY: each part of the effective stress has its own stiffness and its
-  !> own energy.
+  !> own energy. Without viscosity the work of flow is not negative; with viscosity the plastic
+  !> strain lags, and its work is what it is.
   pure subroutine dissipated_by_split(model, path, old, new, work, losses)
     type(concrete_model), intent(in) :: model
     type(flow_path), intent(in) :: path
     type(stiffness_left), intent(in) :: old, new !< at both ends of the increment
     real(rk), intent(out) :: work(2) !< by flow, by damage [J/m3]
     real(rk), intent(out) :: losses(2) !< of the work of damage, those by d_t and d_c [J/m3]
-    type(energy_split) :: split
-    real(rk) :: stresses(6, 2), s(3), axes(3, 3), left(2), nominal(6, 2), energy(2)
-    integer :: i
-    stresses = reshape([path%onset, path%finish], [6, 2])
+    real(rk) :: left(2), energy(2), nominal(6, 2), parts(2, 2), mean(6)
     left = 0.5_rk*(old%value + new%value)
-    energy = 0.0_rk
-    do i = 1, 2
-      call principal_axes(stresses(:, i), s, axes)
-      call split_stress(model, s, split)
-      nominal(:, i) = nominal_stress(stresses(:, i), axes, split, left)
-      energy = energy + 0.5_rk*split%energy
-    end do
-    work(1) = max(0.5_rk*dot_product(nominal(:, 1) + nominal(:, 2), path%flow), 0.0_rk)
+    call split_at(model, path%onset, left, nominal(:, 1), parts(:, 1))
+    call split_at(model, path%finish, left, nominal(:, 2), parts(:, 2))
+    energy = 0.5_rk*(parts(:, 1) + parts(:, 2))
+    mean = 0.5_rk*(nominal(:, 1) + nominal(:, 2))
+    if (model%viscosity > 0.0_rk) then
+      mean = mean_of_path(model, path, mean, dot_product(left, parts(:, 2) - parts(:, 1)), &
+                          dot_product(left, parts(:, 2) + parts(:, 1)))
+    end if
+    work(1) = dot_product(mean, path%flow)
+    if (model%viscosity <= 0.0_rk) work(1) = max(work(1), 0.0_rk)
     work(2) = dot_product(energy, old%value - new%value)
     losses = -matmul(energy, new%by_damage)*path%growth
   end subroutine dissipated_by_split
+
+  !> The mean stress whose work in the change of elastic strain is the change of free energy, like
+  !> that of the path: the mean of both ends with the correction of (12.6). Plastic strain that lags
+  !> moves also where the strain stays; what it dissipates is then what the free energy loses.
+  pure function mean_of_path(model, path, mean, change, both) result(stress)
+    type(concrete_model), intent(in) :: model
+    type(flow_path), intent(in) :: path
+    real(rk), intent(in) :: mean(6) !< of both ends [Pa]
+    real(rk), intent(in) :: change, both !< difference and sum of the free energies [J/m3]
+    real(rk) :: stress(6)
+    real(rk) :: moved(6), strain(6), square
+    moved = path%finish - path%onset
+    strain(1:3) = ((1.0_rk + model%poisson)*moved(1:3) - model%poisson*trace(moved))/model%young
+    strain(4:6) = moved(4:6)/model%shear
+    square = dot_product(moved, strain) + smallest_square*both
+    stress = mean
+    if (square > 0.0_rk) stress = mean + (change - dot_product(mean, strain))/square*moved
+  end function mean_of_path
+
+  !> Nominal stress and both energies of an effective stress.
+  pure subroutine split_at(model, stress, left, nominal, energy)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: stress(6) !< [Pa]
+    real(rk), intent(in) :: left(2) !< of the stiffness of both parts
+    real(rk), intent(out) :: nominal(6) !< [Pa]
+    real(rk), intent(out) :: energy(2) !< without damage [J/m3]
+    type(energy_split) :: split
+    real(rk) :: s(3), axes(3, 3)
+    call principal_axes(stress, s, axes)
+    call split_stress(model, s, split)
+    nominal = nominal_stress(stress, axes, split, left)
+    energy = split%energy
+  end subroutine split_at
 
   !> Energy that the weight of recovery creates on a straight path of effective stress at constant
   !> damage: the integral of -W_0 dd(r), because a part of the stiffness comes and goes under load.

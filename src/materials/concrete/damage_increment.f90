@@ -18,7 +18,9 @@ module damage_increment
   type :: plastic_state
     real(rk) :: strain(6) = 0.0_rk !< plastic, engineering shear
     real(rk) :: measures(2) = 0.0_rk !< kappa_t, kappa_c
-    real(rk) :: width = 0.0_rk !< of the crack band [m]; 0 before the first crack
+    !> Of the crack band [m]; 0 before the first crack. That of the present crack until kappa_t is
+    !> noticeable, kept from then on.
+    real(rk) :: width = 0.0_rk
   end type plastic_state
 
   !> End of an increment, with the data for the tangent.
@@ -98,17 +100,46 @@ contains
       end if
       width = old%width
       if (width <= 0.0_rk) width = band_width(edges, end_state%axes(:, 1))
-      call place_curves(model, width, placed)
-      call flow_by(model, placed, trial, 0.0_rk, flow)
-      end_state%trial_excess = flow%f%value
-      end_state%has_converged = abs(flow%f%value) < huge(width) ! not for NaN
-      if (.not. end_state%has_converged) return
-      end_state%has_yielded = flow%f%value > yield_tolerance*flow%compression%strength
+      call try_width(model, width, placed, end_state)
       if (.not. end_state%has_yielded) return
+      if (revises_width(placed, old)) then
+        width = band_width(edges, end_state%axes(:, 1))
+        call try_width(model, width, placed, end_state)
+        if (.not. end_state%has_yielded) then
+          width = old%width ! whose damage the point has
+          call place_curves(model, width, placed)
+          call flow_by(model, placed, trial, 0.0_rk, flow)
+          return
+        end if
+      end if
       call find_flow(model, placed, trial, flow, end_state%has_converged)
       call take_flow(model, width, end_state)
     end associate
   end subroutine integrate_part
+
+  !> F of the trial state in a band of some width.
+  pure subroutine try_width(model, width, placed, end_state)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: width !< [m]
+    type(placed_curves), intent(inout) :: placed
+    type(increment_result), intent(inout) :: end_state
+    call place_curves(model, width, placed)
+    associate (flow => end_state%flow)
+      call flow_by(model, placed, end_state%trial, 0.0_rk, flow)
+      end_state%trial_excess = flow%f%value
+      end_state%has_converged = abs(flow%f%value) < huge(width) ! not for NaN
+      end_state%has_yielded = end_state%has_converged &
+                              .and. flow%f%value > yield_tolerance*flow%compression%strength
+    end associate
+  end subroutine try_width
+
+  !> Whether a point that yields takes the width of its present direction: its crack is not
+  !> noticeable yet. Crushing under a tension of nothing, or of round-off, makes such cracks.
+  pure logical function revises_width(placed, old)
+    type(placed_curves), intent(in) :: placed !< for the old width
+    type(plastic_state), intent(in) :: old
+    revises_width = old%width > 0.0_rk .and. old%measures(1) < placed%noticeable
+  end function revises_width
 
   !> The deviator, with a trace of zero to round-off of its own size. In nearly hydrostatic states
   !> round-off of the pressure would otherwise change the volume of the flow.

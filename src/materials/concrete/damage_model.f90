@@ -1,7 +1,8 @@
 !> Model of plastic-damage concrete: derived constants and curves.
 module damage_model
   use damage_constants, only: concrete_constants
-  use damage_curves, only: make_compression_curve, make_tension_curve, place_knots, strength_curve
+  use damage_curves, only: make_compression_curve, make_tension_curve, noticeable_strain, &
+                           place_knots, strength_curve
   use kinds, only: rk
   implicit none
   private
@@ -31,6 +32,7 @@ module damage_model
     real(rk) :: width = -1.0_rk !< of the band [m]; negative: not placed yet
     real(rk) :: factor = 1.0_rk !< of the strength in tension, below 1 in too wide a band
     real(rk) :: rounding = 0.0_rk !< a of Eq. 25 with that strength [Pa]
+    real(rk) :: noticeable = 0.0_rk !< kappa_t from which a crack keeps its width
     real(rk), allocatable :: tension(:), compression(:)
   end type placed_curves
 
@@ -77,6 +79,7 @@ contains
     end if
     call place_knots(model%tension, used, placed%tension, placed%factor)
     placed%rounding = placed%factor*model%rounding
+    placed%noticeable = noticeable_strain(model%tension, placed%tension)
     placed%width = used
   end subroutine place_curves
 

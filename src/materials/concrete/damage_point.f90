@@ -32,7 +32,8 @@ contains
     answer%is_elastic = .not. backbone%has_yielded .and. all(old%backbone%measures <= 0.0_rk)
     new%backbone = backbone%state
     new%plastic_strain = backbone%state%strain
-    new%damage = [backbone%flow%tension%damage, backbone%flow%compression%damage]
+    ! A crack whose width is revised would lose damage where the band becomes narrower.
+    new%damage = max([backbone%flow%tension%damage, backbone%flow%compression%damage], old%damage)
     finish%stress = backbone%stress
     finish%axes = backbone%axes
     finish%principal = backbone%flow%s

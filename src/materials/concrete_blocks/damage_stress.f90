@@ -7,7 +7,7 @@ module damage_stress
                           most_points
   use damage_history, only: last_damage, last_measure, last_strain, width_row
   use damage_increment, only: yield_tolerance
-  use damage_model, only: concrete_model, placed_curves
+  use damage_model, only: concrete_model, place_curves, placed_curves
   use damage_trials, only: find_trials, trial_block
   use flow_search, only: find_flows, flow_ends
   use kinds, only: rk
@@ -65,6 +65,7 @@ contains
     real(rk) :: size_of_f
     call find_trials(model, list, new%strain, old%internal, trials)
     call open_block(model, points, list, old, trials, placed, b)
+    call revise_widths(model, points, list, trials, placed, b)
     n = 0
     do k = 1, size(list)
       size_of_f = abs(b%f(k))
@@ -127,6 +128,34 @@ contains
     call find_residuals(model, b)
   end subroutine open_block
 
+  !> Takes the present width, and F with it, where a point yields whose crack is not noticeable yet;
+  !> see revises_width. Points that do not yield with it keep their history.
+  pure subroutine revise_widths(model, points, list, trials, placed, b)
+    type(concrete_model), intent(in) :: model
+    type(point_set), intent(in) :: points
+    integer, intent(in) :: list(:)
+    type(trial_block), intent(in) :: trials
+    type(placed_curves), intent(inout) :: placed
+    type(flow_block), intent(inout) :: b
+    logical :: has_revised
+    integer :: k
+    if (.not. model%by_opening) return
+    has_revised = .false.
+    do k = 1, b%num_points
+      if (.not. b%f(k) > yield_tolerance*b%compression%strength(k)) cycle
+      if (b%tension%row(k) > model%tension%noticeable_row .or. b%cracking(k) <= 0.0_rk) cycle
+      call place_curves(model, b%width(k), placed)
+      if (b%cracking(k) >= placed%noticeable) cycle
+      b%width(k) = width_at(points%edges(:, :, list(k)), trials%deviator(:, k))
+      b%tension%row(k) = 0
+      has_revised = .true.
+    end do
+    if (.not. has_revised) return
+    call find_parts(model, placed, b)
+    call find_kinematics(model, b)
+    call find_residuals(model, b)
+  end subroutine revise_widths
+
   !> Width of a crack band normal to the largest principal stress [m].
   pure real(rk) function width_at(edges, deviator) result(width)
     real(rk), intent(in) :: edges(3, 3), deviator(6)
@@ -172,8 +201,8 @@ contains
         internal(4:last_strain) = internal(4:last_strain) + 2.0_rk*slip*shape(4:6)
         internal(last_strain + 1) = ends%kappa_t(k)
         internal(last_measure) = ends%kappa_c(k)
-        internal(last_measure + 1) = ends%d_t(k)
-        internal(last_damage) = ends%d_c(k)
+        internal(last_measure + 1) = max(internal(last_measure + 1), ends%d_t(k)) ! as update_point
+        internal(last_damage) = max(internal(last_damage), ends%d_c(k))
         if (ends%kappa_t(k) > 0.0_rk) internal(width_row) = ends%width(k)
       end if
       stress(1:3) = left*(ends%q(k)*shape(1:3) - ends%p(k))

@@ -14,6 +14,7 @@ program test_damage_curves
   call slopes()
   call openings()
   call energy_with_damage()
+  call steep_between_rows()
   call lowered_strength()
   call united_rows()
   call pure_damage()
@@ -135,6 +136,38 @@ contains
       call check_close(log, work, 200.0_rk, 0.6_rk, 'fracture energy with damage')
     end do
   end subroutine energy_with_damage
+
+  !> In the widest band the curve is straight over the opening, also where d/(1 - d) sigma grows
+  !> faster and faster towards a row: E w/(d/(1 - d) sigma) of this row is too wide.
+  subroutine steep_between_rows()
+    type(concrete_constants) :: concrete
+    type(strength_curve) :: curve
+    type(curve_value) :: value
+    real(rk), allocatable :: knots(:)
+    real(rk) :: factor, opening, worst
+    integer :: i, row
+    concrete = table_one()
+    concrete%stiffening = 'DISPLACEMENT'
+    concrete%tension_damage_type = 'DISPLACEMENT'
+    concrete%tension = reshape([2.5e6_rk, 0.0_rk, 1.0e6_rk, 0.2e-3_rk, 0.0_rk, 0.4e-3_rk], [2, 3])
+    concrete%tension_damage = reshape([0.0_rk, 0.0_rk, 0.8_rk, 0.2e-3_rk], [2, 2])
+    call make_tension_curve(concrete, curve)
+    ! The row: 25 GPa 0.2 mm/4 MPa = 1.25 m. The slope of w/(5/4 0.2 mm - w) (2.5 MPa - 7.5 GPa/m w)
+    ! at its end is 70 GPa/m, that of the last of 26 intervals 61.7 GPa/m.
+    call check_close(log, curve%longest, 25.0_rk/61.6667_rk, 1.0e-5_rk, 'slope before a row')
+    allocate (knots(size(curve%abscissa)))
+    call place_knots(curve, (1.0_rk - 1.0e-6_rk)*curve%longest, knots, factor)
+    worst = 0.0_rk
+    row = 1
+    do i = 1, size(knots)
+      if (curve%abscissa(i) > 0.2e-3_rk) exit
+      call value_of_curve(curve, knots, factor, knots(i), row, value)
+      opening = curve%longest*(knots(i) + value%damage*value%strength/concrete%young)
+      worst = max(worst, abs(value%strength*(1.0_rk - value%damage) &
+                             - (2.5e6_rk - 7.5e9_rk*opening)))
+    end do
+    call check_close(log, worst, 0.0_rk, 1.0e-5_rk*2.5e6_rk, 'straight over the opening')
+  end subroutine steep_between_rows
 
   !> Snap-back lengths (verification.md); in a band of four times that length half the strength with
   !> the same energy.
