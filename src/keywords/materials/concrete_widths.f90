@@ -1,7 +1,8 @@
 !> Checks the length of concrete elements against the longest crack band (theory.md, (11.12)).
 module concrete_widths
   use concrete_request, only: concrete_cards
-  use damage_checks, only: find_longest_band, rounding, stiffening_table, table_fault
+  use damage_checks, only: find_longest_band, rounding, stiffening_table, &
+                           straight_band, table_fault
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use element_sizes, only: measure_widths
@@ -37,11 +38,11 @@ contains
     end associate
     smallest = minval(least)
     largest = maxval(most)
-    call find_longest_band(given%constants, longest, limit)
-    if (limit%row == 0) return
-    if (.not. any(most > longest*(1.0_rk + rounding))) return
     elements = model%problem%mesh%element_id(elements)
-    if (given%constants%lowers_strength) then
+    call find_longest_band(given%constants, longest, limit)
+    if (.not. any(most > longest*(1.0_rk + rounding))) then
+      call warn_of_curve(given, model, elements, most, faults)
+    else if (given%constants%lowers_strength) then
       call warn_of_strength(given, model, elements, most, longest, faults)
     else
       call fault_length(given, model, elements, most, longest, faults)
@@ -58,7 +59,7 @@ contains
     type(table_fault) :: limit
     character(:), allocatable :: problem, remedy
     real(rk) :: same
-    integer :: worst, num_others, card
+    integer :: worst, card
     call find_longest_band(given%constants, same, limit)
     worst = maxloc(width, 1)
     problem = 'element '//as_text(elements(worst))//' has a length of '//as_text(width(worst))//': '
@@ -69,16 +70,43 @@ contains
                 '(snap-back)'
     else
       card = given%tension_damage%card
-      remedy = '; or a smaller damage, in this row or in new rows before it'//remedy
+      remedy = '; or a smaller damage'//remedy
       problem = problem//'in it the plastic strain opening/length - d/(1 - d) sigma/E '// &
                 'decreases'
     end if
-    num_others = count(width > longest*(1.0_rk + rounding)) - 1
-    if (num_others == 1) problem = problem//'; 1 more is too long'
-    if (num_others > 1) problem = problem//'; '//as_text(num_others)//' more are too long'
-    call model%cards(card)%fault_at(faults, limit%row, 0, problem, 'at most '//as_text(longest)// &
-                                    ', '//limit%expected//remedy)
+    call model%cards(card)%fault_at(faults, limit%row, 0, problem//other_elements(width, longest), &
+                                    'at most '//as_text(longest)//', '//limit%expected//remedy)
   end subroutine fault_length
+
+  !> How many other elements are too long.
+  function other_elements(width, longest) result(text)
+    real(rk), intent(in) :: width(:), longest !< [m]
+    character(:), allocatable :: text
+    integer :: num_others
+    num_others = count(width > longest*(1.0_rk + rounding)) - 1
+    text = ''
+    if (num_others == 1) text = '; 1 more is too long'
+    if (num_others > 1) text = '; '//as_text(num_others)//' more are too long'
+  end function other_elements
+
+  !> Elements in which the stress falls below the straight line between two rows of the tables.
+  subroutine warn_of_curve(given, model, elements, width, faults)
+    type(concrete_cards), intent(in) :: given
+    type(draft), intent(in) :: model
+    integer, intent(in) :: elements(:) !< user's numbers
+    real(rk), intent(in) :: width(:) !< [m]
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: longest
+    integer :: worst
+    longest = straight_band(given%constants)
+    if (.not. any(width > longest*(1.0_rk + rounding))) return
+    worst = maxloc(width, 1)
+    call model%cards(given%tension_damage%card)%warn( &
+      faults, 'element '//as_text(elements(worst))//' has a length of '// &
+      as_text(width(worst))//': in it the plastic strain opening/length - d/(1 - d) sigma/E '// &
+      'would decrease between two rows, where the stress therefore falls below the table'// &
+      other_elements(width, longest), 'at most '//as_text(longest)//'; or a smaller damage')
+  end subroutine warn_of_curve
 
   !> Lists the elements that crack below the strength of the table.
   subroutine warn_of_strength(given, model, elements, width, longest, faults)

@@ -158,18 +158,12 @@ contains
                         'at most '//as_text(longest)//' for its own strength')
         return
       end if
-<<<<<<< HEAD
-      call place%fault_parameter(faults, 'LENGTH', 'the concrete snaps back in a length of '// &
-                                 as_text(test%length), 'at most '//as_text(longest)//': '// &
-                                 limit%expected)
-=======
       problem = 'the concrete snaps back in a length of '
       if (limit%keyword == tension_damage_table) then
         problem = 'the plastic strain decreases in a length of '
       end if
-      call place%fault_parameter(faults, 'LENGTH', problem//as_text(test%length)//' m', &
-                                 'at most '//as_text(longest)//' m: '//limit%expected)
->>>>>>> fixC
+      call place%fault_parameter(faults, 'LENGTH', problem//as_text(test%length), &
+                                 'at most '//as_text(longest)//': '//limit%expected)
     end associate
   end subroutine check_test
 

@@ -6,7 +6,7 @@ module damage_checks
   use write_text, only: as_text
   implicit none
   private
-  public :: table_fault, find_table_faults, find_longest_band, rounding
+  public :: table_fault, find_table_faults, find_longest_band, straight_band, rounding
   public :: stiffening_table, tension_damage_table, hardening_table, compression_damage_table
 
   !> The tables, by their keywords.
@@ -78,10 +78,20 @@ contains
     else
       limit%keyword = tension_damage_table
       limit%row = row_of(constants%tension_damage, curve%abscissa(curve%steepest))
-      limit%expected = 'E over the steepest slope of d/(1 - d) sigma over the opening, sigma '// &
-                       'and d straight from the row before'
+      limit%expected = 'E times the opening over the increase of d/(1 - d) sigma from the row '// &
+                       'before'
     end if
   end subroutine find_longest_band
+
+  !> The widest crack band in which the stress falls straight over the opening between the rows of
+  !> tables over openings [m]. In a wider one the plastic strain would decrease between two rows:
+  !> it stands still there, and the stress is below the line. The tables must be free of faults.
+  real(rk) function straight_band(constants)
+    type(concrete_constants), intent(in) :: constants
+    type(strength_curve) :: curve
+    call make_tension_curve(constants, curve)
+    straight_band = curve%longest_straight
+  end function straight_band
 
   !> sigma and its abscissa: starts above zero at zero, nowhere negative, abscissa increasing.
   subroutine check_strength(keyword, table, faults)

@@ -9,7 +9,7 @@
 !>
 !> With damage c is nonlinear in w, so that a curve linear in plastic strain is not linear in the
 !> opening, and the energy of a crack would depend on l. Curves over openings therefore have knots
-!> between the rows, on straight lines over w. All knots limit the width of the band.
+!> between the rows, on straight lines over w where the width of the band admits it.
 module damage_curves
   use damage_constants, only: concrete_constants
   use kinds, only: rk
@@ -40,7 +40,9 @@ module damage_curves
     real(rk), allocatable :: recoverable(:) !< c_i, its part recovered in unloading
     real(rk), allocatable :: strength(:) !< nominal [Pa]
     real(rk), allocatable :: damage(:)
-    real(rk) :: longest = huge(1.0_rk) !< widest admissible band [m]
+    real(rk) :: longest = huge(1.0_rk) !< widest admissible band, by the rows [m]
+    !> Widest band in which the curve is straight over the opening between the rows [m]
+    real(rk) :: longest_straight = huge(1.0_rk)
     !> Widest band in which the plastic strain increases from knot to knot, by more than least [m]
     real(rk) :: widest_regular = 0.0_rk
     integer :: steepest = 0 !< the knot that limits the band
@@ -103,9 +105,10 @@ contains
     end if
     call find_recoverable(curve, young)
     if (has_openings) then
+      call limit_band(curve, young, curve%longest, curve%steepest, curve%turns_back)
       if (allocated(damage)) call add_knots(curve)
       call find_recoverable(curve, young)
-      call limit_band(curve, young)
+      call limit_band(curve, young, curve%longest_straight)
       call find_noticeable(curve)
     end if
     call find_regular(curve)
@@ -152,7 +155,8 @@ contains
     integer :: parts(2:size(curve%abscissa)) !< of the interval before each row
     real(rk), dimension(size(curve%abscissa)) :: abscissa, strength, damage
     real(rk) :: share, change
-    integer :: i, k, knot
+    integer :: i, k, knot, steepest
+    steepest = curve%steepest
     abscissa = curve%abscissa
     strength = curve%strength
     damage = curve%damage
@@ -175,6 +179,7 @@ contains
         curve%strength(knot) = mix(strength(i - 1:i), share)
         curve%damage(knot) = mix(damage(i - 1:i), share)
       end do
+      if (i == steepest) curve%steepest = knot
     end do
   end subroutine add_knots
 
@@ -226,22 +231,28 @@ contains
   end function value_of_table
 
   !> Widest crack band of a curve over openings [m]. In a wider band the strain w/l + sigma/E would
-  !> decrease from one knot to the next (snap-back), or the plastic strain would decrease
+  !> decrease from one row or knot to the next (snap-back), or the plastic strain would decrease
   !> (paper_notes.md, 11). For linear softening without damage the limit is 2 E G_f/f_t^2.
-  pure subroutine limit_band(curve, young)
-    type(strength_curve), intent(inout) :: curve
+  pure subroutine limit_band(curve, young, longest, steepest, turns_back)
+    type(strength_curve), intent(in) :: curve
     real(rk), intent(in) :: young !< E_0 [Pa]
+    real(rk), intent(out) :: longest !< huge: no limit
+    integer, intent(out), optional :: steepest !< the row or knot that limits the band, 0 for none
+    logical, intent(out), optional :: turns_back !< in a wider band the strain would decrease
     real(rk) :: opening, lost, returned
     integer :: i
+    longest = huge(1.0_rk)
+    if (present(steepest)) steepest = 0
+    if (present(turns_back)) turns_back = .false.
     do i = 2, size(curve%abscissa)
       opening = curve%abscissa(i) - curve%abscissa(i - 1)
       lost = (curve%strength(i - 1) - curve%strength(i))/young
       returned = max(lost, curve%recoverable(i) - curve%recoverable(i - 1))
       if (returned <= 0.0_rk) cycle
-      if (opening/returned >= curve%longest) cycle
-      curve%longest = opening/returned
-      curve%steepest = i
-      curve%turns_back = lost >= returned
+      if (opening/returned >= longest) cycle
+      longest = opening/returned
+      if (present(steepest)) steepest = i
+      if (present(turns_back)) turns_back = lost >= returned
     end do
   end subroutine limit_band
 
