@@ -141,6 +141,9 @@ def test_names_with_umlauts(tmp_path, encoding, on_disk):
     deck.write()
     assert "FÜSSE" in path.read_bytes().decode(encoding)
     assert Deck(path).node_set("FÜSSE").tolist() == [3]
+    copy = Deck(path)
+    copy.write(tmp_path / "other/dam.inp")
+    assert Deck(tmp_path / "other/dam.inp").node_set("FÜSSE").tolist() == [3]
     deck.add_node_set("Ω", [3])
     deck.write()
     assert "Ω" in path.read_text(encoding="utf-8")

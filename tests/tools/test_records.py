@@ -102,6 +102,8 @@ def write(tmp_path):
         "   9   0.0050   NPTS, DT",
         "9 .005 NPTS, DT (SEC)",
         "NPTS=9, DT=.005 s, 200 SPS",
+        "NPTS=9, DT= 5.D-3 SEC",
+        "NPTS: 9 DT: .005",
     ],
 )
 def test_peer_file(write, heading):
@@ -115,6 +117,13 @@ def test_peer_title_that_names_a_unit(write):
     """The line that says what the record is has the unit of its values."""
     text = at2(VALUES).replace("SOMEWHERE", "IN UNITS OF CM/S2")
     (record,) = read_record(write(text, "a.AT2"))
+    assert record.acceleration == pytest.approx(9.81 * VALUES, rel=1e-12)
+
+
+def test_peer_line_that_names_two_units(write):
+    """The unit that is given says which of them it is."""
+    text = at2(VALUES).replace("OF G", "OF G, PEAK 40 CM/S2")
+    (record,) = read_record(write(text, "a.AT2"), unit="G")
     assert record.acceleration == pytest.approx(9.81 * VALUES, rel=1e-12)
 
 
@@ -213,6 +222,11 @@ def test_unit_in_a_heading(text, unit):
         (kyoshin([1, 2]).replace("/6182761", "/0"), {}, "expected Sampling Freq(Hz)"),
         ("# [m/s2]\n0. 1.\n.1 2.\n", {"unit": "G"}, "names the unit M/S2"),
         (at2(VALUES[:4]), {}, "4 values; its header says 9"),
+        (
+            at2(VALUES).replace("OF G", "OF G, PEAK 40 CM/S2"),
+            {},
+            "names the units CM/S2 and G; give",
+        ),
         (at2(VALUES).replace("ACCELERATION", "VELOCITY"), {}, "expected an acceleration"),
         (cosmos(VALUES).replace("Real-header", "Some"), {}, "no real header"),
         (kyoshin([1, 2]).replace("Scale Factor", "Other Factor"), {}, "Scale Factor"),

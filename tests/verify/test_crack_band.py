@@ -82,7 +82,7 @@ def test_longest_brick(keyway, energy):
     too_long = torn_brick(np.array([0.5, 0.5, 1.001 * longest]), 2, energy=energy)
     run = keyway(too_long, "--check", code=2, name="long")
     assert "element 1 has a length of " in run.stderr
-    assert float(run.stderr.split("at most ")[1].split()[0]) == pytest.approx(longest, rel=1e-5)
+    assert float(run.stderr.split("at most ")[1].split(",")[0]) == pytest.approx(longest, rel=1e-5)
 
 
 def crushed_and_torn(depth: float, tension: float, recovery: str) -> str:

@@ -107,6 +107,20 @@ def test_a_block_tied_to_one_that_has_settled(keyway, low, top, slave):
         assert above == pytest.approx(below, abs=DIGITS)
 
 
+@pytest.mark.parametrize(("low", "top"), [(1, 2), (1, 4), (2, 4), (3, 4), (2, 3)])
+def test_a_block_that_has_settled_as_a_whole(keyway, low, top):
+    """All new nodes of the seam start where the old block is, also where their mesh is finer."""
+    column = Column(low, top)
+    settles = node_set("LOW", column.blocks.nodes["LOW"].ravel())
+    text = settles + ties(("LOW_Z1", "TOP_Z0"))
+    model = column.deck(text).replace("BASE, 1, 3", "FOOT, 1, 2\nBASE, 1, 3")
+    foot = node_set("FOOT", column.blocks.side("LOW", "Z0"))
+    moved = step(f"{remove('TOP')}*BOUNDARY\nFOOT, 3, 3, -0.01\n{OUTPUT}")
+    run = keyway(model.replace("*BOUNDARY", f"{foot}*BOUNDARY", 1) + moved + step(add("TOP")))
+    u = state_of(run, "ALL", step=2)[np.concatenate(column.seam)]
+    assert u == pytest.approx(np.tile([0.0, 0.0, -0.01], (len(u), 1)), abs=1e-14)
+
+
 @pytest.mark.parametrize("card", ["EQUATION", "MPC"])
 @pytest.mark.parametrize("old_depends", [True, False])
 def test_relations_of_nodes(keyway, card, old_depends):

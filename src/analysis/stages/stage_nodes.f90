@@ -15,6 +15,9 @@ module stage_nodes
   private
   public :: place_nodes
 
+  !> A smaller sum of weights makes no mean.
+  real(rk), parameter :: least_weight = 1.0e-6_rk
+
   !> Relations of which some begin to hold.
   type :: new_links
     type(linear_links) :: links
@@ -55,7 +58,7 @@ contains
     if (allocated(error)) return
     call mark_dofs(model, number, dofs, was_absent, found)
     q = reshape(u, [size(u)])
-    if (any(found%is_moved .and. found%is_old)) call meet_old_nodes(found, q)
+    if (any(found%is_moved .and. found%is_old)) call start_new_nodes(found, q)
     call found%follow(q)
     do node = 1, size(u, 2)
       associate (new => q(3*node - 2:3*node))
@@ -121,9 +124,10 @@ contains
     end associate
   end subroutine gather_moved
 
-  !> Moves the free dofs that come so that old dofs that follow them stay where they are, by
-  !> conjugate gradients for the least squares (CGLS, Bjorck 1996, 7.4.1).
-  subroutine meet_old_nodes(found, q)
+  !> Starts the free dofs that come so that old dofs that follow them stay where they are: by
+  !> conjugate gradients for the least squares (CGLS, Bjorck 1996, 7.4.1), from the mean of the old
+  !> dofs that follow each of them, which is right where all old nodes have moved alike.
+  subroutine start_new_nodes(found, q)
     type(new_links), intent(in) :: found
     real(rk), intent(inout) :: q(:) !< (dofs)
     real(rk), dimension(size(q)) :: apart, slope, direction, moved
@@ -134,6 +138,9 @@ contains
     associate (links => found%links)
       is_follower(pack(links%dof(:links%num_links), found%is_moved .and. found%is_old)) = .true.
     end associate
+    call find_slope(merge(q, 0.0_rk, is_follower), slope)
+    call find_slope(merge(1.0_rk, 0.0_rk, is_follower), moved)
+    where (moved > least_weight) q = slope/moved
     moved = q
     call found%follow(moved)
     apart = merge(q - moved, 0.0_rk, is_follower)
@@ -164,5 +171,5 @@ contains
       call found%gather_moved(slope)
       slope = merge(slope, 0.0_rk, found%is_free)
     end subroutine find_slope
-  end subroutine meet_old_nodes
+  end subroutine start_new_nodes
 end module stage_nodes

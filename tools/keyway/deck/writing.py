@@ -66,4 +66,13 @@ def _elsewhere(card: Card, place: Path, files: dict[Path, DeckFile],
     moved = targets.get(files[named], named) if named in files else named
     if moved == place_of(place.parent, card.parameters["INPUT"] or ""):
         return card
-    return card.with_file(Path(os.path.relpath(moved, place.parent)).as_posix())
+    return card.with_file("/".join(map(_in_text, Path(os.path.relpath(moved, place.parent)).parts)))
+
+
+def _in_text(name: str) -> str:
+    """The name of a file or folder as a deck has it: one in Latin-1 on the disk is text again."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return os.fsencode(name).decode("latin-1")
+    return name

@@ -13,14 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in
+from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in, units_named_in
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
-AT2_COUNT = re.compile(r"NPTS\s*=\s*(\d+).*?DT\s*=\s*([0-9.eE+-]+)", re.IGNORECASE)
-AT2_OLD_COUNT = re.compile(r"^\s*(\d+)\s+([0-9.eE+-]+)\s+NPTS\s*,\s*DT", re.IGNORECASE)
+AT2_COUNT = re.compile(rf"NPTS\s*[=:]\s*(\d+).*?DT\s*[=:]\s*({NUMBER.pattern})", re.IGNORECASE)
+AT2_OLD_COUNT = re.compile(rf"^\s*(\d+)\s+({NUMBER.pattern})\s+NPTS\s*,\s*DT", re.IGNORECASE)
 AT2_BETWEEN = re.compile(r"[\s,;=():]+")
 AT2_SECONDS = re.compile(r"s\.?|secs?\.?|seconds?", re.IGNORECASE)
-AT2_KIND = re.compile(r"\b(?:accel|veloc|displ)|\b(?:time series|history)\b", re.IGNORECASE)
+AT2_KIND = re.compile(r"\b(?:accel|veloc|displ)|\b(?:series|history)\b", re.IGNORECASE)
 COSMOS_DATA = re.compile(r"^\s*(\d+)\s+(\w+)\s+pts.*?units?\s*=\s*([^,(]+)", re.IGNORECASE)
 COSMOS_REALS = re.compile(r"^\s*(\d+)\s+Real-header values", re.IGNORECASE)
 CSMIP_DATA = re.compile(
@@ -70,7 +70,7 @@ def _refuse_no_number(path: Path, line: str) -> None:
 def _interval(path: Path, text: str) -> float:
     """The time between values [s] of a header."""
     try:
-        value = float(text)
+        value = float(text.upper().replace("D", "E"))
     except ValueError:
         value = 0.0
     if not 0.0 < value < math.inf:
@@ -87,7 +87,7 @@ def read_at2(path: Path, lines: list[str], unit: str | None) -> list[Record]:
     if re.search(r"velocity|displacement", lines[2], re.IGNORECASE):
         raise RecordError(f"{path}:3: '{lines[2].strip()[:60]}'; expected an acceleration")
     values = numbers_in(lines[4:], int(found[1]), None, path)
-    unit = choose_unit(path, _unit_of_at2(lines[:3]), unit, np.abs(values).max())
+    unit = choose_unit(path, _unit_of_at2(path, lines[:3], unit), unit, np.abs(values).max())
     name = lines[1].split(",")[-1].strip()
     if "," not in lines[1] or len(name) > LONGEST_NAME:
         name = path.stem
@@ -108,10 +108,17 @@ def _refuse_other_words(path: Path, line: str) -> None:
             return  # what follows does not belong to DT
 
 
-def _unit_of_at2(header: list[str]) -> str | None:
-    """The unit of a header: that of the lines that say what the record is, else that of all."""
+def _unit_of_at2(path: Path, header: list[str], asked: str | None) -> str | None:
+    """The unit of a header: that of the lines that say what the record is, else that of all. Of two
+    units the one that is asked for counts.
+    """
     own = [line for line in header if AT2_KIND.search(line)]
-    return unit_named_in("\n".join(own)) or unit_named_in("\n".join(header))
+    named = units_named_in("\n".join(own)) or units_named_in("\n".join(header))
+    if len(named) > 1 and asked not in named:
+        raise RecordError(
+            f"{path}: the file names the units {' and '.join(named)}; give that of its values"
+        )
+    return asked if len(named) > 1 else next(iter(named), None)
 
 
 def read_cosmos(path: Path, lines: list[str], unit: str | None) -> list[Record]:

@@ -50,8 +50,13 @@ class Record:
 
 def unit_named_in(text: str) -> str | None:
     """The unit that a text names; None if it names none, or more than one."""
-    found = [unit for unit, pattern in _NAMES.items() if pattern.search(text)]
+    found = units_named_in(text)
     return found[0] if len(found) == 1 else None
+
+
+def units_named_in(text: str) -> list[str]:
+    """All units that a text names."""
+    return [unit for unit, pattern in _NAMES.items() if pattern.search(text)]
 
 
 def choose_unit(path: Path, named: str | None, asked: str | None, largest: float) -> str:
