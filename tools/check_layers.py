@@ -29,7 +29,6 @@ ROOMS = (
     "equations/distributed",
     "equations/elimination",
     "equations",
-    "equations/products",
     "equations/spectrum",
     "equations/low_rank",
     "equations/supernodes",

@@ -21,11 +21,6 @@ set(sources
   math/dense_factor.f90
   math/single_factor.f90
   math/single_solve.c
-  products/dense_products.f90
-  products/fused_products.c
-  products/mixed_products.f90
-  products/symmetric_product.c
-  products/symmetric_product.f90
   math/pivoted_cholesky.f90
   math/row_tables.f90
   math/small_matrix.f90
@@ -39,6 +34,13 @@ set(sources
   messages/pages_of_models.f90
   messages/pages_of_runs.f90
   messages/pages_of_values.f90
+  products/blas_bridge.c
+  products/blas_threads.f90
+  products/dense_products.f90
+  products/fused_products.c
+  products/mixed_products.f90
+  products/symmetric_product.c
+  products/symmetric_product.f90
   ranks/rank_balance.f90
   ranks/ranks.f90
   report/diagnostic_text.f90

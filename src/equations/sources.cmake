@@ -1,8 +1,7 @@
 set(sources
   anderson_mixing.f90
-  blas_bridge.c
-  blas_threads.f90
   cholmod_bridge.c
+  column_products.f90
   distributed/petsc_equations.f90
   elimination/cholmod_status.f90
   elimination/factor_top.f90
@@ -15,7 +14,6 @@ set(sources
   matrix_parts.f90
   matrix_pattern.f90
   nested_dissection.f90
-  products/column_products.f90
   solver_catalogue.f90
   solver_cholmod.f90
   solver_petsc.f90

@@ -8,7 +8,8 @@
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 /* y += entry x for the entries of one unknown */
-ALWAYS_INLINE void add(int vectors, double entry, const double *restrict x, double *restrict y)
+ALWAYS_INLINE void add_product(int vectors, double entry, const double *restrict x,
+                               double *restrict y)
 {
 #pragma GCC ivdep
   for (int c = 0; c < vectors; c++) y[c] += entry * x[c];
@@ -19,13 +20,13 @@ ALWAYS_INLINE void add_column(int vectors, int length, const int *row, const dou
                               const double *x, double *y, const double *own, double *own_y)
 {
   double sum[8] = {0.0};
-  add(vectors, value[0], own, sum);
+  add_product(vectors, value[0], own, sum);
   for (int k = 1; k < length; k++) {
     size_t i = (size_t)(row[k] - 1) * (size_t)vectors;
-    add(vectors, value[k], x + i, sum);
-    add(vectors, value[k], own, y + i);
+    add_product(vectors, value[k], x + i, sum);
+    add_product(vectors, value[k], own, y + i);
   }
-  add(vectors, 1.0, sum, own_y);
+  add_product(vectors, 1.0, sum, own_y);
 }
 
 /* Three columns of one node, which have the same rows below them: rows are read once for all. */
@@ -37,22 +38,22 @@ ALWAYS_INLINE void add_node(int vectors, const int *start, const int *row, const
   const int *below = row + start[2];
   int length = start[3] - start[2] - 1;
   double sum[3][8] = {{0.0}};
-  add(vectors, a[0], q1, sum[0]), add(vectors, a[1], q2, sum[0]), add(vectors, a[2], q3, sum[0]);
-  add(vectors, a[1], q1, sum[1]), add(vectors, b[0], q2, sum[1]), add(vectors, b[1], q3, sum[1]);
-  add(vectors, a[2], q1, sum[2]), add(vectors, b[1], q2, sum[2]), add(vectors, c[0], q3, sum[2]);
+  const double own_block[3][3] = {{a[0], a[1], a[2]}, {a[1], b[0], b[1]}, {a[2], b[1], c[0]}};
+  for (int r = 0; r < 3; r++)
+    for (int q = 0; q < 3; q++) add_product(vectors, own_block[r][q], own + q * vectors, sum[r]);
   a += 3, b += 2, c += 1;
   for (int k = 0; k < length; k++) {
     size_t i = (size_t)(below[k] - 1) * (size_t)vectors;
-    add(vectors, a[k], x + i, sum[0]);
-    add(vectors, b[k], x + i, sum[1]);
-    add(vectors, c[k], x + i, sum[2]);
+    add_product(vectors, a[k], x + i, sum[0]);
+    add_product(vectors, b[k], x + i, sum[1]);
+    add_product(vectors, c[k], x + i, sum[2]);
     double moved[8] = {0.0};
-    add(vectors, a[k], q1, moved);
-    add(vectors, b[k], q2, moved);
-    add(vectors, c[k], q3, moved);
-    add(vectors, 1.0, moved, y + i);
+    add_product(vectors, a[k], q1, moved);
+    add_product(vectors, b[k], q2, moved);
+    add_product(vectors, c[k], q3, moved);
+    add_product(vectors, 1.0, moved, y + i);
   }
-  for (int r = 0; r < 3; r++) add(vectors, 1.0, sum[r], own_y + r * vectors);
+  for (int r = 0; r < 3; r++) add_product(vectors, 1.0, sum[r], own_y + r * vectors);
 }
 
 /* y = A x; alike[j] is the number of columns from j on with the same rows below them. Three columns
