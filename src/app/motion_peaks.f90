@@ -1,11 +1,11 @@
 !> Peaks of the base motions of a step, for the summary of a model.
 module motion_peaks
-  use amplitudes, only: amplitude_at, one_g
+  use amplitudes, only: amplitude, amplitude_at, one_g
   use check_units, only: has_other_length
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use problem_definition, only: problem
-  use step_plan, only: step_load
+  use step_plan, only: span_of_step, step_load
   use write_text, only: as_text
   implicit none
   private
@@ -20,8 +20,7 @@ contains
     integer, intent(in) :: number !< of the step
     type(step_load), intent(in) :: work
     character(:), allocatable :: text
-    real(rk) :: peak, at, last
-    integer :: i
+    real(rk) :: peak, at
     text = ''
     select type (motion => model%loads(work%load)%item)
     type is (base_motion)
@@ -30,19 +29,32 @@ contains
         return
       end if
       associate (record => model%amplitudes(work%amplitude))
-        last = end_of_step(model, number, record%uses_total_time)
-        i = max(maxloc(abs(record%value), dim=1, mask=record%time <= last), 1)
-        peak = abs(record%value(i))
-        at = record%time(i)
-        if (abs(amplitude_at(record, last)) > peak) then ! the step ends between two values
-          peak = abs(amplitude_at(record, last))
-          at = last
-        end if
+        call find_peak(record, span_of_step(model%steps, number, record%uses_total_time), peak, at)
         peak = abs(work%end_factor)*peak
         text = ', peak '//in_units(model, peak)//' at t = '//as_text(at)//' s'
       end associate
     end select
   end function peak_of_motion
+
+  !> The largest value of a history within a step and at its start and end, between two values.
+  pure subroutine find_peak(record, span, peak, at)
+    type(amplitude), intent(in) :: record
+    real(rk), intent(in) :: span(2) !< start and end of the step [s]
+    real(rk), intent(out) :: peak, at !< size, and its time [s]
+    integer :: i
+    peak = -1.0_rk
+    at = span(1)
+    i = maxloc(abs(record%value), dim=1, mask=record%time >= span(1) .and. record%time <= span(2))
+    if (i > 0) then
+      peak = abs(record%value(i))
+      at = record%time(i)
+    end if
+    do i = 1, size(span)
+      if (abs(amplitude_at(record, span(i))) <= peak) cycle
+      peak = abs(amplitude_at(record, span(i)))
+      at = span(i)
+    end do
+  end subroutine find_peak
 
   !> '3.07 m/s2 = 0.313 g'; '3070' where the deck is not in metres.
   pure function in_units(model, acceleration) result(text)
@@ -57,13 +69,4 @@ contains
     if (text(1:1) == '.') text = '0'//text
     text = as_text(acceleration)//' m/s2 = '//text//' g'
   end function in_units
-
-  !> End of a step on its own clock or on that of the analysis [s].
-  pure real(rk) function end_of_step(model, number, is_total)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    logical, intent(in) :: is_total
-    end_of_step = model%steps(number)%duration
-    if (is_total) end_of_step = sum(model%steps(:number)%duration)
-  end function end_of_step
 end module motion_peaks

@@ -59,6 +59,7 @@ set(sources
   loads/keywords_base_motion.f90
   loads/keywords_loads.f90
   loads/keywords_reservoir.f90
+  loads/uplift_edges.f90
   materials/concrete_remarks.f90
   materials/concrete_request.f90
   materials/concrete_widths.f90

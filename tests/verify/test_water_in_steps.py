@@ -110,3 +110,52 @@ def test_a_reservoir_is_emptied(keyway):
     again = keyway(deck + step(empty), name="again")
     (warning,) = of_reservoirs(again)
     assert "has no effect: HYDROSTATIC=NO" in warning
+
+
+def joined(bricks: tuple, moved: tuple, faces: str) -> str:
+    """Two blocks with joint J across the river, one brick thick from the lake to the tail water.
+
+    PART is the upstream face of the first brick of each block, UP and DOWN the whole faces.
+    """
+    blocks = Blocks()
+    blocks.add("A", (1, 0, 2), *bricks)
+    blocks.add("B", (1, 0, 2), *moved)
+    second = 1 + (blocks.nodes["A"].shape[1] - 1) * (blocks.nodes["A"].shape[2] - 1)
+    cards = f"*SURFACE, NAME=PART\n1, S6\n{second}, S6\n"
+    cards += "*SURFACE, NAME=UP\nA, S6\nB, S6\n*SURFACE, NAME=DOWN\nA, S4\nB, S4\n"
+    cards += "*JOINT LAW, NAME=LAW, KN=1e10, KT=1e10, TENSILE STRENGTH=1e9, UPLIFT=LAKE, "
+    cards += f"TAIL WATER=RIVER\n*JOINT, NAME=J, LAW=LAW\n{faces}\n"
+    cards += node_set("BASE", np.nonzero(blocks.x[:, 2] == 0.0)[0])
+    return blocks.deck({"": "*ELASTIC\n2e10, 0.\n"}, cards + "*BOUNDARY\nBASE, 1, 3\n")
+
+
+LIFT = joined(((4, 0, 4), (1, 0, 1)), ((4, 0, 4), (1, 1, 2)), "B_Z0, A_Z1")
+UPRIGHT = joined(((1, 0, 1), (3, 0, 3)), ((1, 1, 2), (3, 0, 3)), "B_Y0, A_Y1")
+
+
+@pytest.mark.parametrize("model", [LIFT, UPRIGHT], ids=["lift", "upright"])
+@pytest.mark.parametrize("way", ["*STATIC", "*DYNAMIC"])
+def test_tail_water_where_the_lake_grows_along_the_joint(keyway, model, way):
+    """The lake has its own head alone at its edge, in each step: the diagram of the tail water ends
+    at the edge of the step. Over a static step the water goes from the one diagram to the other."""
+    river = "*RESERVOIR, NAME=RIVER, SURFACE=DOWN, LEVEL={}, BED=0.\n"
+    run = keyway(
+        model.replace("*ELASTIC", "*DENSITY\n2400.\n*ELASTIC")
+        + step(LAKE.format("PART", 2.0, "") + river.format(1.8) + OUTPUT.replace("J3", "J"))
+        + step(LAKE.format("UP", 3.0, "")).replace("*STATIC\n", f"{way}, DIRECT\n0.5, 1.\n")
+        + step(river.format(2.5))
+    )
+    with h5py.File(run.folder / f"{run.job}.h5") as file:
+        x, y, z = file["joints/J/x"][:].T
+        part, growing, risen = (
+            [group["joints/J/water"][:] / HEAD for _, group in sorted(step["increments"].items())]
+            for _, step in sorted(file["steps"].items())
+        )
+    is_upstream = x == 0.0
+    is_wet = is_upstream & ((y if model is LIFT else z) <= 1.0)  # in the first step
+    assert part[-1][is_wet] == pytest.approx(2.0 - z[is_wet], **ROUND_OFF)
+    for found, tail in ((growing[-1], 1.8), (risen[-1], 2.5)):
+        wanted = np.maximum(np.where(is_upstream, 3.0, tail) - z, 0.0)
+        assert found == pytest.approx(wanted, **ROUND_OFF)
+    halfway = (part[-1] + growing[-1]) / 2.0 if way == "*STATIC" else growing[-1]
+    assert growing[0] == pytest.approx(halfway, **ROUND_OFF)

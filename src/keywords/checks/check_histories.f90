@@ -1,7 +1,7 @@
 !> Warns of histories that do not act as they stand: over before the step, zero, too fine for its
 !> increments, in units of acceleration on loads.
 module check_histories
-  use amplitudes, only: amplitude, amplitude_at, spacing_of
+  use amplitudes, only: amplitude, amplitude_at
   use check_idle_steps, only: first_displacement
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
@@ -10,6 +10,7 @@ module check_histories
   use model_draft, only: draft
   use named_things, only: find_amplitude
   use step_control, only: increment_control, start_control
+  use step_plan, only: span_of_step
   use write_text, only: as_text
   implicit none
   private
@@ -19,6 +20,15 @@ module check_histories
   real(rk), parameter :: seen_share = 0.9_rk !< of the peak: less is a warning
   real(rk), parameter :: rounded = 0.01_rk !< of a spacing, by times with few digits
   integer, parameter :: most_samples = 10000000
+
+  !> What the increments of a step see of a history.
+  type :: view_of_history
+    real(rk) :: smallest = 0.0_rk, largest = 0.0_rk !< increment [s]
+    real(rk) :: seen = 0.0_rk !< the largest value at their ends
+    !> The largest increment that has grown beyond the time between the values within it, 0 for
+    !> none, and that time [s]
+    real(rk) :: coarse = 0.0_rk, spacing = 0.0_rk
+  end type view_of_history
 
 contains
 
@@ -66,7 +76,7 @@ contains
       return
     end if
     if (size(record%time) == 1) return
-    span = span_of_step(model, s, record)
+    span = span_of_step(model%problem%steps, s, record%uses_total_time)
     clock = trim(merge('total time', 'step time ', record%uses_total_time))
     associate (first => record%time(1), last => record%time(size(record%time)))
       if (last <= span(1)*(1.0_rk + round_off)) then
@@ -82,20 +92,6 @@ contains
     end associate
   end subroutine warn_of_span
 
-  !> Start and end of a step on the clock of a history [s].
-  pure function span_of_step(model, s, record) result(span)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: s !< step
-    type(amplitude), intent(in) :: record
-    real(rk) :: span(2)
-    span = 0.0_rk
-    if (record%uses_total_time) then
-      span(1) = sum(model%problem%steps(:s - 1)%duration, &
-                    mask=.not. model%problem%steps(:s - 1)%procedure%finds_modes)
-    end if
-    span(2) = span(1) + model%problem%steps(s)%duration
-  end function span_of_step
-
   !> A peak between the increments does not act. Increments are taken to grow as they do where each
   !> converges quickly. One warning in a step says that they grow beyond the spacing of a motion.
   subroutine warn_of_increments(this, model, s, record, coarse, faults)
@@ -106,41 +102,82 @@ contains
     integer, intent(inout) :: coarse !< the last step that was warned of, 0 for none
     type(diagnostic_list), intent(inout) :: faults
     type(increment_control) :: control
+    type(view_of_history) :: view
     character(:), allocatable :: sizes
-    real(rk) :: span(2), peak, seen, t, smallest, largest
-    span = span_of_step(model, s, record)
+    real(rk) :: span(2), peak
+    span = span_of_step(model%problem%steps, s, record%uses_total_time)
     peak = maxval(abs(record%value), mask=record%time >= span(1) .and. record%time <= span(2))
     associate (plan => model%problem%steps(s))
       if (plan%duration/plan%first_increment > real(most_samples, rk)) return
       call start_control(plan, plan%procedure%has_inertia, control)
-      if (control%finest > 0.0_rk) control%size = control%finest ! with *CONTROLS, ACCURACY
-      smallest = control%size
     end associate
-    t = 0.0_rk
-    largest = 0.0_rk
-    seen = abs(amplitude_at(record, span(1)))
-    do while (t < control%duration*(1.0_rk - round_off))
-      largest = max(largest, control%next_size(t))
-      t = t + control%next_size(t)
-      seen = max(seen, abs(amplitude_at(record, span(1) + t)))
-      call control%accept(1)
-    end do
-    if (seen >= seen_share*peak) then
-      if (coarse == s .or. control%finest > 0.0_rk) return
-      if (smallest > spacing_of(record)*(1.0_rk + rounded)) return
-      if (largest <= spacing_of(record)*(1.0_rk + rounded)) return
+    if (control%finest > 0.0_rk) control%size = control%finest ! with *CONTROLS, ACCURACY
+    call walk_increments(record, span(1), control, view)
+    if (view%seen >= seen_share*peak) then
+      if (coarse == s .or. control%finest > 0.0_rk .or. view%coarse <= 0.0_rk) return
       if (.not. model%problem%steps(s)%procedure%has_inertia) return
       if (.not. (is_keyword(this, 'BASE MOTION') .or. is_keyword(this, 'BOUNDARY'))) return
       coarse = s
-      call warn_of_growth(this, largest, spacing_of(record), faults)
+      call warn_of_growth(this, view%coarse, view%spacing, faults)
       return
     end if
-    sizes = as_text(smallest)
-    if (largest > smallest*(1.0_rk + round_off)) sizes = sizes//' to '//as_text(largest)
+    sizes = as_text(view%smallest)
+    if (view%largest > view%smallest*(1.0_rk + round_off)) then
+      sizes = sizes//' to '//as_text(view%largest)
+    end if
     call this%warn(faults, 'increments of '//sizes//" s miss the peak of the history '"// &
-                   this%text('AMPLITUDE')//"': "//as_text(seen)//' at their ends, '// &
+                   this%text('AMPLITUDE')//"': "//as_text(view%seen)//' at their ends, '// &
                    as_text(peak)//' in the history', 'increments that end near the peak')
   end subroutine warn_of_increments
+
+  !> Goes through the increments of a step.
+  pure subroutine walk_increments(record, start, control, view)
+    type(amplitude), intent(in) :: record
+    real(rk), intent(in) :: start !< of the step on the clock of the history [s]
+    type(increment_control), intent(inout) :: control !< at the start of the step
+    type(view_of_history), intent(out) :: view
+    real(rk) :: t, size, spacing
+    integer :: first
+    view%smallest = control%size
+    view%seen = abs(amplitude_at(record, start))
+    first = 1
+    t = 0.0_rk
+    do while (t < control%duration*(1.0_rk - round_off))
+      size = control%next_size(t)
+      call find_spacing(record, start + t, start + t + size, first, spacing)
+      t = t + size
+      view%largest = max(view%largest, size)
+      view%seen = max(view%seen, abs(amplitude_at(record, start + t)))
+      if (size > spacing*(1.0_rk + rounded) .and. size > view%coarse &
+          .and. view%smallest <= spacing*(1.0_rk + rounded)) then
+        view%coarse = size
+        view%spacing = spacing
+      end if
+      call control%accept(1)
+    end do
+  end subroutine walk_increments
+
+  !> The shortest time between values within an increment: half the time from the value before to
+  !> the value after, for a jump is no sampling.
+  pure subroutine find_spacing(record, start, end, first, spacing)
+    type(amplitude), intent(in) :: record
+    real(rk), intent(in) :: start, end !< of the increment, on the clock of the history [s]
+    integer, intent(inout) :: first !< value that may matter; grows with the increments
+    real(rk), intent(out) :: spacing !< huge for none [s]
+    real(rk) :: half
+    integer :: i
+    spacing = 0.5_rk*huge(1.0_rk) ! the caller adds round-off
+    do i = first, size(record%time) - 2
+      half = 0.5_rk*(record%time(i + 2) - record%time(i))
+      if (record%time(i + 2) <= start + rounded*half) then
+        first = i + 1
+      else if (record%time(i) >= end - rounded*half) then
+        exit
+      else
+        spacing = min(spacing, half)
+      end if
+    end do
+  end subroutine find_spacing
 
   !> Increments that grow until they leave out values of a motion.
   subroutine warn_of_growth(this, largest, spacing, faults)

@@ -2,21 +2,17 @@
 !> the same steps with the same factors.
 module finish_uplift
   use applied_load, only: load
-  use dam_mesh, only: surface
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use joint_rim, only: area_of_facets, face_rim, find_rim
+  use joint_rim, only: face_rim
   use kinds, only: rk
   use load_reservoir, only: reservoir_load
   use load_uplift, only: fill_linear, fill_open, uplift_load
-  use mesh_faces, only: face_nodes
   use model_draft, only: add_load, draft, law_of_joint, law_request
   use named_things, only: longest_name
   use nearest_words, only: nearest_word
-  use problem_definition, only: problem
-  use step_plan, only: step_load
-  use surface_facets, only: list_surface_facets
-  use surface_segments, only: facet_set
+  use step_plan, only: step_before, step_load
+  use uplift_edges, only: edges_of_steps, first_that_reaches, list_edges, list_faces
   implicit none
   private
   public :: complete_uplift
@@ -34,8 +30,7 @@ contains
     if (faults%has_errors()) return
     do j = 1, size(model%joints)
       i = law_of_joint(model, j)
-      call fill_joint(model, j, model%laws(i), model%laws(i)%uplift, .false., faults)
-      call fill_joint(model, j, model%laws(i), model%laws(i)%tail_water, .true., faults)
+      call fill_joint(model, j, model%laws(i), faults)
     end do
   end subroutine complete_uplift
 
@@ -84,43 +79,96 @@ contains
     end if
   end subroutine check_name
 
-  !> Adds the loads of one joint: one for each load of the reservoir, in any step. A reservoir whose
-  !> surface grows from step to step has no pressure in the joint until its surface reaches it.
-  subroutine fill_joint(model, j, request, lake_name, is_tail, faults)
+  !> Adds the loads of one joint.
+  subroutine fill_joint(model, j, request, faults)
     type(draft), intent(inout) :: model
     integer, intent(in) :: j !< joint
     type(law_request), intent(in) :: request
-    character(*), intent(in) :: lake_name !< '' for none
-    logical, intent(in) :: is_tail !< the reservoir is that of TAIL WATER
     type(diagnostic_list), intent(inout) :: faults
-    type(uplift_load) :: water
-    type(face_rim) :: reached, rim
-    logical :: is_dry
-    integer :: i, num_before
-    if (lake_name == '') return
-    call find_edges(model, j, request%uplift, 0, reached)
-    if (size(reached%upstream) == 0) then
-      if (.not. is_tail) call fault_no_edge(model, j, request, faults)
+    type(face_rim), allocatable :: rims(:) !< (loads)
+    if (request%uplift == '') return
+    call list_edges(model, j, request%uplift, rims)
+    if (first_that_reaches(rims) == 0) then
+      call fault_no_edge(model, j, request, faults)
       return
     end if
-    num_before = model%num_loads
-    do i = 1, num_before
-      select type (lake => model%problem%loads(i)%item)
-      type is (reservoir_load)
-        if (lake%target /= lake_name) cycle
-        rim = reached
-        if (.not. is_tail) call find_edges(model, j, lake_name, i, rim)
-        is_dry = size(rim%upstream) == 0
-        if (is_dry) rim = reached
-        call fill_water(model, j, request, rim, lake, is_tail, water, faults)
-      class default
-        cycle
-      end select
+    call add_uplift(model, j, request, rims, faults)
+    if (request%tail_water /= '') call add_tail_water(model, j, request, rims, faults)
+  end subroutine fill_joint
+
+  !> One load for each load of the reservoir, in any step. A reservoir whose surface grows from step
+  !> to step has no pressure in the joint until its surface reaches it.
+  subroutine add_uplift(model, j, request, rims, faults)
+    type(draft), intent(inout) :: model
+    integer, intent(in) :: j !< joint
+    type(law_request), intent(in) :: request
+    type(face_rim), intent(in) :: rims(:) !< (loads) edges of the joint at UPLIFT's reservoir
+    type(diagnostic_list), intent(inout) :: faults
+    type(uplift_load) :: water
+    integer :: always(size(model%problem%steps))
+    logical :: is_dry
+    integer :: i, edge
+    do i = 1, size(rims)
+      if (.not. is_of_reservoir(model, i, request%uplift)) cycle
+      is_dry = size(rims(i)%upstream) == 0
+      edge = merge(first_that_reaches(rims), i, is_dry)
+      call fill_water(model, j, request, rims(edge), i, .false., water, faults)
       if (faults%has_errors()) return
       if (is_dry) call water%remove_pressure()
-      call enter_water(model, i, water, request%profile, lake_name)
+      always = edge
+      call enter_water(model, i, water, request%profile, edge, always)
     end do
-  end subroutine fill_joint
+  end subroutine add_uplift
+
+  !> The diagram of the tail water ends at the upstream edge, which moves where the reservoir
+  !> upstream gets another surface: one load for each load of the tail water and each edge.
+  subroutine add_tail_water(model, j, request, rims, faults)
+    type(draft), intent(inout) :: model
+    integer, intent(in) :: j !< joint
+    type(law_request), intent(in) :: request
+    type(face_rim), intent(in) :: rims(:) !< (loads) edges of the joint at UPLIFT's reservoir
+    type(diagnostic_list), intent(inout) :: faults
+    type(uplift_load) :: water
+    integer :: of_step(size(model%problem%steps))
+    integer :: i, edge
+    of_step = edges_of_steps(model, rims)
+    do i = 1, size(rims)
+      if (.not. is_of_reservoir(model, i, request%tail_water)) cycle
+      do edge = 1, size(rims)
+        if (.not. acts_in(model, i, of_step == edge)) cycle
+        call fill_water(model, j, request, rims(edge), i, .true., water, faults)
+        if (faults%has_errors()) return
+        call enter_water(model, i, water, request%profile, edge, of_step)
+      end do
+    end do
+  end subroutine add_tail_water
+
+  !> Whether a load is one of a reservoir.
+  pure logical function is_of_reservoir(model, number, lake_name) result(is_one)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number !< of the load
+    character(*), intent(in) :: lake_name
+    is_one = .false.
+    select type (lake => model%problem%loads(number)%item)
+    type is (reservoir_load)
+      is_one = lake%target == lake_name
+    end select
+  end function is_of_reservoir
+
+  !> Whether a load acts at the end of one of some steps.
+  pure logical function acts_in(model, load, is_meant) result(acts)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: load
+    logical, intent(in) :: is_meant(:) !< (steps)
+    integer :: s
+    acts = .false.
+    do s = 1, size(is_meant)
+      if (.not. is_meant(s)) cycle
+      associate (rules => model%problem%steps(s)%loads)
+        acts = acts .or. any(rules%load == load .and. abs(rules%end_factor) > 0.0_rk)
+      end associate
+    end do
+  end function acts_in
 
   !> No surface of the reservoir meets the joint.
   subroutine fault_no_edge(model, j, request, faults)
@@ -135,39 +183,14 @@ contains
       'a SURFACE of the *RESERVOIR that ends at the edge of the joint')
   end subroutine fault_no_edge
 
-  !> The edges of the joint: upstream where the surface of one load of UPLIFT's reservoir meets the
-  !> joint, or of the first load that does. The edge upstream is empty where none does.
-  subroutine find_edges(model, j, lake_name, only, rim)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: j !< joint
-    character(*), intent(in) :: lake_name !< of UPLIFT, also for the tail water
-    integer, intent(in) :: only !< load, 0: any of the reservoir
-    type(face_rim), intent(out) :: rim
-    integer, allocatable :: slave(:, :), master(:, :)
-    logical, allocatable :: is_wet(:)
-    integer :: i
-    call list_faces(model, j, slave, master)
-    allocate (rim%upstream(2, 0), rim%downstream(2, 0))
-    do i = 1, model%num_loads
-      if (only > 0 .and. i /= only) cycle
-      select type (lake => model%problem%loads(i)%item)
-      type is (reservoir_load)
-        if (lake%target /= lake_name) cycle
-        call mark_surface(model%problem, lake%faces, is_wet)
-        call choose_rim(model%problem%mesh%x, slave, master, is_wet, rim)
-        if (size(rim%upstream) > 0) return
-      end select
-    end do
-  end subroutine find_edges
-
   !> The pressures at the points of the joint.
-  subroutine fill_water(model, j, request, rim, lake, is_tail, water, faults)
+  subroutine fill_water(model, j, request, rim, lake_load, is_tail, water, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: j !< joint
     type(law_request), intent(in) :: request
     type(face_rim), intent(in) :: rim
-    type(reservoir_load), intent(in) :: lake
-    logical, intent(in) :: is_tail
+    integer, intent(in) :: lake_load !< that is the reservoir
+    logical, intent(in) :: is_tail !< the reservoir is that of TAIL WATER
     type(uplift_load), intent(out) :: water
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: slave(:, :), master(:, :)
@@ -179,83 +202,50 @@ contains
       end if
       water%wet_joint = j
       water%kind = 'uplift'
-      if (request%profile == 'OPEN') then
-        call list_faces(model, j, slave, master)
-        call fill_open(model%problem%mesh, joint, rim, slave, lake, water)
-      else
-        call fill_linear(model%problem%mesh, joint, rim, lake, is_tail, water)
-      end if
+      select type (lake => model%problem%loads(lake_load)%item)
+      type is (reservoir_load)
+        if (request%profile == 'OPEN') then
+          call list_faces(model, j, slave, master)
+          call fill_open(model%problem%mesh, joint, rim, slave, lake, water)
+        else
+          call fill_linear(model%problem%mesh, joint, rim, lake, is_tail, water)
+        end if
+      end select
     end associate
   end subroutine fill_water
 
-  !> Marks the nodes of a surface.
-  subroutine mark_surface(model, faces, is_wet)
-    type(problem), intent(in) :: model
-    type(surface), intent(in) :: faces
-    logical, allocatable, intent(out) :: is_wet(:) !< (nodes)
-    integer :: i
-    allocate (is_wet(model%mesh%num_nodes), source=.false.)
-    do i = 1, size(faces%element)
-      is_wet(face_nodes(model%mesh, faces%element(i), faces%face(i))) = .true.
-    end do
-  end subroutine mark_surface
-
-  !> Facets of both faces of a joint.
-  subroutine list_faces(model, j, slave, master)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: j !< joint
-    integer, allocatable, intent(out) :: slave(:, :), master(:, :) !< (4, facets) nodes
-    type(facet_set) :: facets
-    associate (mesh => model%problem%mesh, request => model%joints(j))
-      if (request%slave == 0) then
-        slave = mesh%nodes(5:8, request%elements)
-        master = mesh%nodes(1:4, request%elements)
-        return
-      end if
-      call list_surface_facets(mesh, model%problem%surfaces(request%slave), facets)
-      slave = facets%node
-      call list_surface_facets(mesh, model%problem%surfaces(request%master), facets)
-      master = facets%node
-    end associate
-  end subroutine list_faces
-
-  !> The rim of the smaller face; of the larger one if the reservoir's surface does not touch the
-  !> smaller one.
-  subroutine choose_rim(x, slave, master, is_wet, rim)
-    real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
-    integer, intent(in) :: slave(:, :), master(:, :) !< (4, facets)
-    logical, intent(in) :: is_wet(:) !< (nodes)
-    type(face_rim), intent(out) :: rim
-    real(rk), parameter :: roundoff = 1.0e-9_rk
-    if (area_of_facets(x, slave) <= area_of_facets(x, master)*(1.0_rk + roundoff)) then
-      call find_rim(x, slave, is_wet, rim)
-      if (size(rim%upstream) == 0) call find_rim(x, master, is_wet, rim)
-    else
-      call find_rim(x, master, is_wet, rim)
-      if (size(rim%upstream) == 0) call find_rim(x, slave, is_wet, rim)
-    end if
-  end subroutine choose_rim
-
-  !> Adds the load to the problem, active in the steps in which the reservoir is active.
-  subroutine enter_water(model, lake, water, profile, lake_name)
+  !> Adds the load to the problem, active in the steps in which the reservoir is active and the
+  !> edges of the joint are those of the load. Where they change the old load ends and the new one
+  !> begins, as where a reservoir is replaced.
+  subroutine enter_water(model, lake, water, profile, edge, of_step)
     type(draft), intent(inout) :: model
     integer, intent(in) :: lake !< load that is the reservoir
     type(uplift_load), intent(in) :: water
-    character(*), intent(in) :: profile, lake_name
+    character(*), intent(in) :: profile
+    integer, intent(in) :: edge !< the load whose edges the water has
+    integer, intent(in) :: of_step(:) !< (steps) the load whose edges hold at the end of each step
     class(load), allocatable :: item
     type(step_load) :: rule
-    integer :: s, i
+    character(:), allocatable :: name
+    integer :: s, i, before
     allocate (item, source=water)
-    associate (wet => model%problem%joints(water%wet_joint))
-      call add_load(model, item, 'water of '//lake_name//' in joint '//wet%name//' ('//profile// &
-                    ')', 'JOINT LAW', lake_name)
+    name = model%problem%loads(lake)%item%target
+    associate (wet => model%problem%joints(water%wet_joint)%name)
+      call add_load(model, item, 'water of '//name//' in joint '//wet//' ('//profile//')', &
+                    'JOINT LAW', name)
     end associate
-    do s = 1, size(model%problem%steps)
+    do s = 1, size(of_step)
+      before = step_before(model%problem%steps, s)
+      if (before == 0) before = s
+      if (all(of_step([before, s]) /= edge)) cycle
       associate (step => model%problem%steps(s))
         do i = 1, size(step%loads)
           if (step%loads(i)%load /= lake) cycle
           rule = step%loads(i)
           rule%load = model%num_loads
+          if (of_step(before) /= edge) rule%start_factor = 0.0_rk
+          if (of_step(s) /= edge) rule%end_factor = 0.0_rk
+          if (max(abs(rule%start_factor), abs(rule%end_factor)) <= 0.0_rk) cycle
           step%loads = [step%loads, rule]
         end do
       end associate

@@ -7,7 +7,7 @@ module step_plan
   private
   public :: step, step_load, step_fixity, print_request, field_request, step_controls
   public :: step_damping, step_reduction, initial_value, step_procedure, field_name_length
-  public :: grouting, output_rhythm, step_before
+  public :: grouting, output_rhythm, step_before, span_of_step
 
   integer, parameter :: field_name_length = 8 !< of names of fields that a deck may give
 
@@ -167,6 +167,19 @@ contains
       if (.not. steps(before)%procedure%finds_modes) exit
     end do
   end function step_before
+
+  !> Start and end of a step on its own clock or on that of the analysis [s].
+  pure function span_of_step(steps, number, uses_total_time) result(span)
+    type(step), intent(in) :: steps(:)
+    integer, intent(in) :: number !< of the step
+    logical, intent(in) :: uses_total_time
+    real(rk) :: span(2)
+    span = 0.0_rk
+    associate (before => steps(:number - 1))
+      if (uses_total_time) span(1) = sum(before%duration, mask=.not. before%procedure%finds_modes)
+    end associate
+    span(2) = span(1) + steps(number)%duration
+  end function span_of_step
 
   !> Increments from one output to the next in a step. Where the card gives times, of the first
   !> increment.
