@@ -40,7 +40,7 @@ def test_an_error_of_the_system_is_one_line_with_the_file(capsys):
 @pytest.mark.parametrize("is_folder", [True, False])
 def test_outputs_that_cannot_be_written(tmp_path, capsys, is_folder):
     """An output that is a folder, or lies in a file."""
-    place = tmp_path / "file"
+    place = tmp_path / "file.inp"
     place.mkdir() if is_folder else place.write_text("")
     output = place if is_folder else place / "out"
     for tool, options in ((make_dam, SMALL), (make_motion, ["--no-pictures", "--duration", "2"])):

@@ -151,7 +151,7 @@ contains
                         'LENGTH, the side of an element [m]')
       end if
       call find_longest_band(given%constants, longest, limit)
-      if (test%length <= longest*(1.0_rk + rounding)) return
+      if (test%length*(1.0_rk - rounding) <= longest) return
       if (given%constants%lowers_strength) then
         call place%warn(faults, 'in a length of '//as_text(test%length)//' the concrete '// &
                         'cracks at a lower strength, with the same energy', &

@@ -143,7 +143,7 @@ contains
     real(rk) :: longest
     if (.not. width > 0.0_rk) then
       fault = 'no width of the crack band: CELENT is not positive, nor is constant 14'
-    else if (width > model%tension%longest*(1.0_rk + rounding) &
+    else if (width*(1.0_rk - rounding) > model%tension%longest &
              .and. .not. constants%lowers_strength) then
       call find_longest_band(constants, longest, limit)
       fault = 'a crack band of '//as_text(width)//'; expected at most '//as_text(longest)// &

@@ -22,6 +22,7 @@ contains
     type(dof_map) :: dofs
     real(rk) :: total
     integer :: k, t
+    if (size(ties) == 0) return
     dofs = displacement_dofs(size(field, 2))
     call link_ties(dofs, ties, links, error)
     if (allocated(error)) return
