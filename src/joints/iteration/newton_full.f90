@@ -102,7 +102,7 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     self%process%balance = balance
-    self%process%x = 0.0_rk*x
+    self%process%x = spread(0.0_rk, 1, size(x))
     if (allocated(self%process%closed_jump)) deallocate (self%process%closed_jump)
     call iterate_on_all(self, joints, old, new, outcome)
     x = self%process%x
