@@ -42,14 +42,14 @@ def deck(options: str, damping: str) -> str:
     return text.replace("*NSET, NSET=BASE", "*NSET, NSET=FOLLOWED\n10, 14, 22\n*NSET, NSET=BASE")
 
 
-# Without "both": there displacements of one node differ by 2.4 % with the kernels of SKYLAKEX, by
-# less than 2 % with those of HASWELL. The cause is not known yet.
-@pytest.mark.parametrize("name", [name for name in DAMPINGS if name != "both"])
+# With 60 modes the error of U1 with "both" depends on the kernels of the BLAS: 1.0 % HASWELL, 2.4 %
+# SKYLAKEX, 5.1 % SANDYBRIDGE. With 80 modes it is 0.2 % with all of them.
+@pytest.mark.parametrize("name", DAMPINGS)
 def test_only_the_blocks_are_damped(keyway, name):
     """Openings, motions, reactions, stresses and energies are those of the full model."""
     full, reduced = (
         keyway(deck(options, DAMPINGS[name]), name=model)
-        for options, model in (("", "full"), (", REDUCED, MODES=60", "reduced"))
+        for options, model in (("", "full"), (", REDUCED, MODES=80", "reduced"))
     )
     largest = max(full.csv(bed)["opening"].max() for bed in BEDS)
     assert largest > 3e-3
