@@ -50,6 +50,13 @@ def peak_line(
     return line
 
 
+def checked(program: Path, folder: Path, deck: str) -> subprocess.CompletedProcess[str]:
+    """--check of a deck without faults."""
+    (folder / "deck.inp").write_text(deck, encoding="utf-8")
+    command = [str(program.resolve()), "--check", "deck.inp"]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+
+
 def test_a_deck_in_millimetres(program_path, tmp_path) -> None:
     """The summary says that the deck is not in SI, and gives the peak without a unit."""
     deck = BASE.read_text(encoding="utf-8").replace("2400.", "2.4e-9").replace("22e9", "22e3")
@@ -58,9 +65,7 @@ def test_a_deck_in_millimetres(program_path, tmp_path) -> None:
         "*AMPLITUDE, NAME=QUAKE, UNIT=G\n0., 0., 0.5, 0.3, 1., 0.\n*STEP\n"
         "*DYNAMIC\n0.01, 1.\n*BASE MOTION, DOF=1, AMPLITUDE=QUAKE, SCALE=1000.\n",
     )
-    (tmp_path / "deck.inp").write_text(deck, encoding="utf-8")
-    command = [str(program_path.resolve()), "--check", "deck.inp"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    done = checked(program_path, tmp_path, deck)
     assert "not SI (a *DENSITY of 2.4e-9)" in done.stdout
     assert ", peak 2943 at t = 0.5 s" in done.stdout
     assert "warning" not in done.stderr
@@ -76,9 +81,7 @@ def test_a_deck_in_metres_and_other_forces(density, young, program_path, tmp_pat
         "*DYNAMIC\n0.01, 1.\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n"
         "*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n",
     )
-    (tmp_path / "deck.inp").write_text(deck, encoding="utf-8")
-    command = [str(program_path.resolve()), "--check", "deck.inp"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    done = checked(program_path, tmp_path, deck)
     assert f"not SI (a *DENSITY of {float(density)!r})" in done.stdout
     assert ", peak 2.943 m/s2 = 0.3000 g at t = 0.5 s" in done.stdout
     assert "not in SI" not in done.stderr
@@ -141,9 +144,7 @@ def test_peak_of_a_step_that_ends_between_two_values(program_path, tmp_path) -> 
         "*AMPLITUDE, NAME=QUAKE\n0., 0., 1., 2., 2., 0.\n*STEP\n*DYNAMIC\n0.01, 0.4\n"
         "*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n",
     )
-    (tmp_path / "deck.inp").write_text(deck, encoding="utf-8")
-    command = [str(program_path.resolve()), "--check", "deck.inp"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    done = checked(program_path, tmp_path, deck)
     assert ", peak 0.8 m/s2 = 0.0815 g at t = 0.4 s" in done.stdout
 
 

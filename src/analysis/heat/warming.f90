@@ -121,13 +121,13 @@ contains
     real(rk) :: values(size(rule%nodes)) !< [K]
     real(rk) :: clock, share
     integer :: k
-    clock = when%now
     if (rule%amplitude > 0) then
-      if (histories(rule%amplitude)%uses_total_time) clock = when%start + when%now
-      values = amplitude_at(histories(rule%amplitude), clock)*rule%value(1, :)
+      associate (own => histories(rule%amplitude))
+        values = amplitude_at(own, when%clock(own%uses_total_time))*rule%value(1, :)
+      end associate
       return
     end if
-    if (rule%uses_total_time) clock = when%start + when%now
+    clock = when%clock(rule%uses_total_time)
     k = count(rule%time <= clock)
     if (k == 0) then
       values = rule%value(1, :)

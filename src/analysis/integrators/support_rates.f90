@@ -51,15 +51,14 @@ contains
     type(dam_system), intent(in) :: system
     type(step_time), intent(in) :: when
     real(rk), intent(out) :: v(:) !< (num_total); zero in other unknowns [m/s]
-    real(rk) :: clock
     integer :: i
     v = 0.0_rk
     do i = 1, size(system%supports)
       associate (item => system%supports(i))
         if (item%amplitude == 0) cycle
-        clock = when%now
-        if (model%amplitudes(item%amplitude)%uses_total_time) clock = when%start + when%now
-        v(item%unknown) = item%value*slope_at(model%amplitudes(item%amplitude), clock)
+        associate (own => model%amplitudes(item%amplitude))
+          v(item%unknown) = item%value*slope_at(own, when%clock(own%uses_total_time))
+        end associate
       end associate
     end do
   end subroutine find_slopes

@@ -6,7 +6,7 @@ module reduced_nodes
   use node_dofs, only: num_directions, zero_vectors
   use print_kinds, only: prints_of_nodes
   use reduced_basis, only: reduced_model
-  use reduced_ports, only: rows_of, solve_blocks, static_solvers
+  use reduced_ports, only: rows_of, solve_parts, static_solvers
   use step_plan, only: print_request, step
   use step_system, only: dam_system
   implicit none
@@ -68,12 +68,7 @@ contains
         response(:, row) = unit(:n)
       end do
     end do
-    if (allocated(solvers%held)) then
-      massless = response
-      call solve_blocks(solvers%held, massless, error)
-      if (allocated(error)) return
-    end if
-    call solve_blocks(solvers%whole, response, error)
+    call solve_parts(solvers, response, massless, error)
     if (allocated(error)) return
     associate (port => followed%port, ports => size(basis%path, 1))
       do row = 1, size(followed%start)

@@ -10,8 +10,8 @@ module reduced_ports
   use step_system, only: dam_system
   implicit none
   private
-  public :: static_solvers, rows_of, forces_of, find_port_compliance, solve_blocks, solve_inertial
-  public :: sample_forces
+  public :: static_solvers, rows_of, forces_of, find_port_compliance, sample_forces
+  public :: solve_blocks, solve_inertial, solve_parts
 
   !> The factors of a reduced model.
   type :: static_solvers
@@ -128,15 +128,25 @@ contains
     real(rk), intent(inout) :: columns(:, :) !< (num_free, columns)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: massless(:, :)
+    call solve_parts(solvers, columns, massless, error)
+    if (allocated(error)) return
+    if (allocated(massless)) columns = columns - massless
+  end subroutine solve_inertial
+
+  !> Responses to forces, in place, and those of massless solids on held ones with mass.
+  subroutine solve_parts(solvers, columns, massless, error)
+    type(static_solvers), intent(inout) :: solvers
+    real(rk), intent(inout) :: columns(:, :) !< (num_free, columns)
+    !> (num_free, columns); not allocated where massless solids have no part of their own
+    real(rk), allocatable, intent(out) :: massless(:, :)
+    type(error_type), allocatable, intent(out) :: error
     if (allocated(solvers%held)) then
       massless = columns
       call solve_blocks(solvers%held, massless, error)
       if (allocated(error)) return
     end if
     call solve_blocks(solvers%whole, columns, error)
-    if (allocated(error)) return
-    if (allocated(massless)) columns = columns - massless
-  end subroutine solve_inertial
+  end subroutine solve_parts
 
   !> Solves for all columns, in place.
   subroutine solve_blocks(factor, columns, error)

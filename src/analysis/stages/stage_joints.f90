@@ -69,10 +69,7 @@ contains
         do p = 1, joint%num_points
           if (own%phase(p) == phase_absent) cycle
           shift = matmul(joint%rotation(:, :, p), relative_displacement(joint, p, change))
-          own%origin(:, p) = own%origin(:, p) + shift
-          if (.not. allocated(own%part_origin)) cycle
-          own%part_origin(:, :, p) = own%part_origin(:, :, p) &
-                                     + spread(shift, 2, size(own%part_origin, 2))
+          call move_origin(p, shift, own)
         end do
       end associate
     end do
@@ -184,11 +181,20 @@ contains
       if (own%phase(p) == phase_absent) cycle
       change = matmul(joint%rotation(:, :, p), relative_displacement(joint, p, u)) &
                - own%origin(:, p) - own%jump(:, p)
-      own%origin(:, p) = own%origin(:, p) + change
-      own%part_origin(:, :, p) = own%part_origin(:, :, p) &
-                                 + spread(change, 2, size(own%part_origin, 2))
+      call move_origin(p, change, own)
     end do
   end subroutine follow_rows
+
+  !> Moves the zero of a point, and those of its parts.
+  pure subroutine move_origin(p, change, own)
+    integer, intent(in) :: p
+    real(rk), intent(in) :: change(3) !< [m]
+    type(joint_state), intent(inout) :: own
+    own%origin(:, p) = own%origin(:, p) + change
+    if (.not. allocated(own%part_origin)) return
+    own%part_origin(:, :, p) = own%part_origin(:, :, p) &
+                               + spread(change, 2, size(own%part_origin, 2))
+  end subroutine move_origin
 
   !> Copies what the law sets.
   pure subroutine restore_point(old, p, own)
@@ -286,12 +292,7 @@ contains
     call joint%law%update(jump, old, fresh, tangent)
     do p = 1, joint%num_points
       if (.not. takes(p)) cycle
-      own%origin(:, p) = own%origin(:, p) + own%jump(:, p) - jump(:, p)
-      if (allocated(own%part_origin)) then
-        own%part_origin(:, :, p) = own%part_origin(:, :, p) &
-                                   + spread(own%jump(:, p) - jump(:, p), 2, &
-                                            size(own%part_origin, 2))
-      end if
+      call move_origin(p, own%jump(:, p) - jump(:, p), own)
       call renew_point(fresh, p, own)
       own%phase(p) = phase_full
     end do

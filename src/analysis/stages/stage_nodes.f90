@@ -8,9 +8,9 @@ module stage_nodes
   use dam_mesh, only: node_tie
   use dof_numbering, only: linear_links
   use kinds, only: rk
-  use node_dofs, only: dof_map, displacement_dofs
+  use node_dofs, only: as_dofs, as_field, dof_map, displacement_dofs
   use problem_definition, only: problem
-  use tie_motion, only: link_ties
+  use tie_motion, only: follow_links, link_ties
   implicit none
   private
   public :: place_nodes
@@ -25,7 +25,7 @@ module stage_nodes
     logical, allocatable :: is_old(:) !< (links) its dependent dof has been there
     logical, allocatable :: is_free(:) !< (dofs) comes, and neither depends nor is held
   contains
-    procedure :: follow, gather_moved
+    procedure :: gather_moved
   end type new_links
 
 contains
@@ -45,7 +45,7 @@ contains
     type(node_tie), allocatable :: ties(:)
     type(new_links) :: found
     type(dof_map) :: dofs
-    real(rk), allocatable :: q(:)
+    real(rk), allocatable :: q(:), placed(:, :)
     integer :: node
     change = 0.0_rk
     do node = 1, size(u, 2)
@@ -57,15 +57,14 @@ contains
     call link_ties(dofs, ties, found%links, error)
     if (allocated(error)) return
     call mark_dofs(model, number, dofs, was_absent, found)
-    q = reshape(u, [size(u)])
+    q = as_dofs(u)
     if (any(found%is_moved .and. found%is_old)) call start_new_nodes(found, q)
-    call found%follow(q)
+    call follow_links(found%links, found%is_moved, q)
+    placed = as_field(q)
     do node = 1, size(u, 2)
-      associate (new => q(3*node - 2:3*node))
-        if (.not. was_absent(node)) change(:, node) = new - u(:, node)
-        u(:, node) = new
-      end associate
+      if (.not. was_absent(node)) change(:, node) = placed(:, node) - u(:, node)
     end do
+    u = placed
   end subroutine place_nodes
 
   !> Which dofs come, and which relations they move.
@@ -93,22 +92,7 @@ contains
     end associate
   end subroutine mark_dofs
 
-  !> The dependent dofs of relations that begin to hold, from the others.
-  pure subroutine follow(self, q)
-    class(new_links), intent(in) :: self
-    real(rk), intent(inout) :: q(:) !< (dofs)
-    integer :: k
-    associate (links => self%links)
-      do k = 1, links%num_links
-        if (.not. self%is_moved(k)) cycle
-        associate (first => links%first(k), last => links%first(k + 1) - 1)
-          q(links%dof(k)) = sum(links%coefficient(first:last)*q(links%term(first:last)))
-        end associate
-      end do
-    end associate
-  end subroutine follow
-
-  !> The transpose of `follow`: forces of dependent dofs go to the others.
+  !> The transpose of `follow_links`: forces of dependent dofs go to the others.
   pure subroutine gather_moved(self, f)
     class(new_links), intent(in) :: self
     real(rk), intent(inout) :: f(:) !< (dofs)
@@ -142,7 +126,7 @@ contains
     call find_slope(merge(1.0_rk, 0.0_rk, is_follower), moved)
     where (moved > least_weight) q = slope/moved
     moved = q
-    call found%follow(moved)
+    call follow_links(found%links, found%is_moved, moved)
     apart = merge(q - moved, 0.0_rk, is_follower)
     call find_slope(apart, slope)
     direction = slope
@@ -152,7 +136,7 @@ contains
       ! Round-off of displacements: what is left moves the old nodes.
       if (.not. now > epsilon(1.0_rk)**2*first) exit
       moved = direction
-      call found%follow(moved)
+      call follow_links(found%links, found%is_moved, moved)
       moved = merge(moved, 0.0_rk, is_follower)
       step = now/dot(moved, moved)
       q = q + step*direction

@@ -26,7 +26,7 @@ module step_loads
     real(rk) :: duration = 1.0_rk !< of the step [s]
     real(rk) :: increment = 0.0_rk !< the one that ends now [s]
   contains
-    procedure :: set_end
+    procedure :: set_end, clock
   end type step_time
 
   !> Loads with equal factors. Uplift with PROFILE=OPEN has a group of its own.
@@ -213,15 +213,22 @@ contains
     integer, intent(in) :: history !< amplitude, 0 for none
     type(amplitude), intent(in) :: histories(:)
     type(step_time), intent(in) :: when
-    real(rk) :: clock
     if (history > 0) then
-      clock = when%now
-      if (histories(history)%uses_total_time) clock = when%start + when%now
-      factor = last*amplitude_at(histories(history), clock)
+      associate (own => histories(history))
+        factor = last*amplitude_at(own, when%clock(own%uses_total_time))
+      end associate
     else if (when%is_dynamic) then
       factor = last
     else
       factor = first + (last - first)*when%now/when%duration
     end if
   end function factor_at
+
+  !> The time on the clock of the analysis, or on that of the step [s].
+  pure real(rk) function clock(self, uses_total_time)
+    class(step_time), intent(in) :: self
+    logical, intent(in) :: uses_total_time
+    clock = self%now
+    if (uses_total_time) clock = self%start + self%now
+  end function clock
 end module step_loads

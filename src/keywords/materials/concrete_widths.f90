@@ -1,7 +1,7 @@
 !> Checks the length of concrete elements against the longest crack band (theory.md, (11.12)).
 module concrete_widths
   use concrete_request, only: concrete_cards
-  use damage_checks, only: find_longest_band, rounding, stiffening_table, &
+  use damage_checks, only: find_longest_band, is_too_long, stiffening_table, &
                            straight_band, table_fault
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
@@ -40,7 +40,7 @@ contains
     largest = maxval(most)
     elements = model%problem%mesh%element_id(elements)
     call find_longest_band(given%constants, longest, limit)
-    if (.not. any(most*(1.0_rk - rounding) > longest)) then
+    if (.not. any(is_too_long(most, longest))) then
       call warn_of_curve(given, model, elements, most, faults)
     else if (given%constants%lowers_strength) then
       call warn_of_strength(given, model, elements, most, longest, faults)
@@ -83,7 +83,7 @@ contains
     real(rk), intent(in) :: width(:), longest !< [m]
     character(:), allocatable :: text
     integer :: num_others
-    num_others = count(width*(1.0_rk - rounding) > longest) - 1
+    num_others = count(is_too_long(width, longest)) - 1
     text = ''
     if (num_others == 1) text = '; 1 more is too long'
     if (num_others > 1) text = '; '//as_text(num_others)//' more are too long'
@@ -99,7 +99,7 @@ contains
     real(rk) :: longest
     integer :: worst
     longest = straight_band(given%constants)
-    if (.not. any(width*(1.0_rk - rounding) > longest)) return
+    if (.not. any(is_too_long(width, longest))) return
     worst = maxloc(width, 1)
     call model%cards(given%tension_damage%card)%warn( &
       faults, 'element '//as_text(elements(worst))//' has a length of '// &
@@ -117,7 +117,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: touched(:)
     integer :: worst
-    touched = sorted_unique(pack(elements, width*(1.0_rk - rounding) > longest))
+    touched = sorted_unique(pack(elements, is_too_long(width, longest)))
     worst = maxloc(width, 1)
     call model%cards(given%stiffening%card)%warn( &
       faults, as_text(size(touched))//' of '//as_text(size(elements))//' elements are longer '// &

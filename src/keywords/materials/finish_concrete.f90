@@ -4,7 +4,7 @@ module finish_concrete
   use concrete_remarks, only: describe_concrete, warn_of_constants
   use concrete_widths, only: check_widths
   use damage_checks, only: compression_damage_table, find_longest_band, find_table_faults, &
-                           hardening_table, rounding, stiffening_table, table_fault, &
+                           hardening_table, is_too_long, stiffening_table, table_fault, &
                            tension_damage_table
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
@@ -151,7 +151,7 @@ contains
                         'LENGTH, the side of an element [m]')
       end if
       call find_longest_band(given%constants, longest, limit)
-      if (test%length*(1.0_rk - rounding) <= longest) return
+      if (.not. is_too_long(test%length, longest)) return
       if (given%constants%lowers_strength) then
         call place%warn(faults, 'in a length of '//as_text(test%length)//' the concrete '// &
                         'cracks at a lower strength, with the same energy', &

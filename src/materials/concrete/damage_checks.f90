@@ -6,7 +6,7 @@ module damage_checks
   use write_text, only: as_text
   implicit none
   private
-  public :: table_fault, find_table_faults, find_longest_band, straight_band, rounding
+  public :: table_fault, find_table_faults, find_longest_band, straight_band, is_too_long
   public :: stiffening_table, tension_damage_table, hardening_table, compression_damage_table
 
   !> The tables, by their keywords.
@@ -82,6 +82,12 @@ contains
                        'before'
     end if
   end subroutine find_longest_band
+
+  !> Whether a length is above the longest one, which may be huge: by more than round-off.
+  elemental logical function is_too_long(length, longest)
+    real(rk), intent(in) :: length, longest !< [m]
+    is_too_long = length*(1.0_rk - rounding) > longest
+  end function is_too_long
 
   !> The widest crack band in which the stress falls straight over the opening between the rows of
   !> tables over openings [m]. In a wider one the plastic strain would decrease between two rows:

@@ -1,7 +1,7 @@
 !> Constants and state of plastic-damage concrete as PROPS and STATEV of a UMAT; the numbers are
 !> explained in umat_damage_plasticity.f90.
 module umat_concrete
-  use damage_checks, only: find_longest_band, find_table_faults, rounding, table_fault
+  use damage_checks, only: find_longest_band, find_table_faults, is_too_long, table_fault
   use damage_constants, only: concrete_constants
   use damage_model, only: concrete_model, make_concrete_model
   use kinds, only: rk
@@ -143,7 +143,7 @@ contains
     real(rk) :: longest
     if (.not. width > 0.0_rk) then
       fault = 'no width of the crack band: CELENT is not positive, nor is constant 14'
-    else if (width*(1.0_rk - rounding) > model%tension%longest &
+    else if (is_too_long(width, model%tension%longest) &
              .and. .not. constants%lowers_strength) then
       call find_longest_band(constants, longest, limit)
       fault = 'a crack band of '//as_text(width)//'; expected at most '//as_text(longest)// &

@@ -3,12 +3,12 @@ module tie_motion
   use dam_mesh, only: node_tie
   use kinds, only: rk
   use errors, only: error_type
-  use node_dofs, only: dof_map, displacement_dofs, num_directions
+  use node_dofs, only: as_dofs, as_field, dof_map, displacement_dofs, num_directions
   use dof_numbering, only: linear_links
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
   implicit none
   private
-  public :: follow_ties, link_ties
+  public :: follow_ties, follow_links, link_ties
 
 contains
 
@@ -19,26 +19,28 @@ contains
     real(rk), intent(inout) :: field(:, :) !< (3, nodes)
     type(error_type), allocatable, intent(out) :: error
     type(linear_links) :: links
-    type(dof_map) :: dofs
-    real(rk) :: total
-    integer :: k, t
+    real(rk) :: q(size(field))
     if (size(ties) == 0) return
-    dofs = displacement_dofs(size(field, 2))
-    call link_ties(dofs, ties, links, error)
+    call link_ties(displacement_dofs(size(field, 2)), ties, links, error)
     if (allocated(error)) return
-    do k = 1, links%num_links
-      total = 0.0_rk
-      do t = links%first(k), links%first(k + 1) - 1
-        total = total + links%coefficient(t)*value_at(links%term(t))
-      end do
-      field(dofs%component_of(links%dof(k)), dofs%node(links%dof(k))) = total
-    end do
-  contains
-    pure real(rk) function value_at(dof)
-      integer, intent(in) :: dof
-      value_at = field(dofs%component_of(dof), dofs%node(dof))
-    end function value_at
+    q = as_dofs(field)
+    call follow_links(links, spread(.true., 1, links%num_links), q)
+    field = as_field(q)
   end subroutine follow_ties
+
+  !> Computes dependent dofs from those on which they depend.
+  pure subroutine follow_links(links, is_meant, q)
+    type(linear_links), intent(in) :: links !< each after those on which it depends
+    logical, intent(in) :: is_meant(:) !< (links)
+    real(rk), intent(inout) :: q(:) !< (dofs)
+    integer :: k
+    do k = 1, links%num_links
+      if (.not. is_meant(k)) cycle
+      associate (first => links%first(k), last => links%first(k + 1) - 1)
+        q(links%dof(k)) = sum(links%coefficient(first:last)*q(links%term(first:last)))
+      end associate
+    end do
+  end subroutine follow_links
 
   !> The dependent dofs of ties, each after those on which it depends.
   subroutine link_ties(dofs, ties, links, error)

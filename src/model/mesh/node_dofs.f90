@@ -10,6 +10,7 @@ module node_dofs
   private
   public :: dof_map, dof_component, number_dofs, displacement_dofs
   public :: num_directions, displacements, zero_vectors, gather_vectors, add_vectors
+  public :: as_dofs, as_field
 
   integer, parameter :: num_directions = 3 !< displacements of a node: along x, y, z
 
@@ -94,6 +95,20 @@ contains
     real(rk), allocatable :: field(:, :) !< (directions, nodes)
     allocate (field(num_directions, num_nodes), source=0.0_rk)
   end function zero_vectors
+
+  !> A field of vectors at all nodes as a vector of their displacement dofs.
+  pure function as_dofs(field) result(q)
+    real(rk), intent(in) :: field(:, :) !< (directions, nodes)
+    real(rk) :: q(size(field))
+    q = reshape(field, shape(q))
+  end function as_dofs
+
+  !> A vector of the displacement dofs of all nodes as a field.
+  pure function as_field(q) result(field)
+    real(rk), intent(in) :: q(:) !< (directions times nodes)
+    real(rk) :: field(num_directions, size(q)/num_directions)
+    field = reshape(q, shape(field))
+  end function as_field
 
   !> The vectors at some nodes, one after the other, as in the vectors of elements.
   pure function gather_vectors(field, nodes) result(values)

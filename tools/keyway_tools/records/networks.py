@@ -51,7 +51,7 @@ def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> n
         else:
             words = NUMBER.findall(line)
         try:
-            values += [float(word.replace("D", "e").replace("d", "e")) for word in words]
+            values += map(_real, words)
         except ValueError:
             raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected numbers") from None
         if not all(map(math.isfinite, values)):
@@ -59,6 +59,11 @@ def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> n
         if len(values) >= count:
             return np.array(values[:count])
     raise RecordError(f"{path}: {len(values)} values; its header says {count}")
+
+
+def _real(word: str) -> float:
+    """A number whose exponent may have a D, as Fortran writes it. Raises ValueError."""
+    return float(word.upper().replace("D", "E"))
 
 
 def _refuse_no_number(path: Path, line: str) -> None:
@@ -70,7 +75,7 @@ def _refuse_no_number(path: Path, line: str) -> None:
 def _interval(path: Path, text: str) -> float:
     """The time between values [s] of a header."""
     try:
-        value = float(text.upper().replace("D", "E"))
+        value = _real(text)
     except ValueError:
         value = 0.0
     if not 0.0 < value < math.inf:
