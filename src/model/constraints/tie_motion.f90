@@ -19,7 +19,7 @@ contains
     real(rk), intent(inout) :: field(:, :) !< (3, nodes)
     type(error_type), allocatable, intent(out) :: error
     type(linear_links) :: links
-    real(rk) :: q(size(field))
+    real(rk), allocatable :: q(:)
     if (size(ties) == 0) return
     call link_ties(displacement_dofs(size(field, 2)), ties, links, error)
     if (allocated(error)) return
