@@ -107,15 +107,16 @@ contains
   subroutine store_motion(numbers, now)
     type(numbering), intent(in) :: numbers
     type(state), intent(inout) :: now
-    real(rk), allocatable :: residual(:)
-    associate (own => now%motion)
+    real(rk) :: residual(numbers%num_free + 1:numbers%num_total)
+    associate (own => now%motion, first => numbers%num_free + 1)
       call numbers%expand(own%q, now%u)
       if (allocated(own%v)) call numbers%expand(own%v, now%v)
       if (allocated(own%a)) call numbers%expand(own%a, now%a)
       if (allocated(own%inertia)) then
-        residual = own%inertia + own%viscous + own%internal + own%contact - own%external
+        residual = own%inertia(first:) + own%viscous(first:) + own%internal(first:) &
+                   + own%contact(first:) - own%external(first:)
       else
-        residual = own%internal + own%contact - own%external
+        residual = own%internal(first:) + own%contact(first:) - own%external(first:)
       end if
       call numbers%expand_prescribed(residual, now%reaction)
     end associate

@@ -279,7 +279,7 @@ contains
   !> The entries of prescribed unknowns as a field, zero elsewhere: reactions from forces.
   pure subroutine expand_prescribed(self, r, u)
     class(numbering), intent(in) :: self
-    real(rk), intent(in) :: r(:) !< (num_total)
+    real(rk), intent(in) :: r(self%num_free + 1:) !< (prescribed unknowns)
     real(rk), intent(out) :: u(:, :) !< (components, nodes)
     integer :: k
     u = 0.0_rk
