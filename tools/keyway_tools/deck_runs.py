@@ -25,7 +25,7 @@ EXTREMES = ("S1", "S3", "OPENING", "DAMAGET")
 STATUS_OF_CODE = {0: "finished", 1: "stopped", 2: "bad deck", 3: "system failed"}
 PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 _prctl = getattr(ctypes.CDLL(None), "prctl", None)
-GRACE = 60.0  # seconds from the request to end until the process is killed: an increment may be long
+GRACE = 60.0  # seconds until a run that was asked to end is killed: increments may be long
 
 
 @dataclass
