@@ -118,6 +118,33 @@ def test_a_pressure_under_another_name_is_warned_of(keyway):
     assert -table["RF1"][-4:].sum() == pytest.approx(11.0, rel=1e-8)
 
 
+def weights(run, direction: int) -> np.ndarray:
+    """The forces on the column in the increments of its last step."""
+    return -run.csv("node_BASE")[f"RF{direction}"].reshape(-1, 4).sum(axis=1)[-4:]
+
+
+def test_a_weight_is_replaced_by_one_of_another_direction(keyway):
+    """The column has 2 m3 and weighs 2 kg/m3; a message says what does not act any more."""
+    down, along = (
+        "*DLOAD\nALL_BRICKS, GRAV, 10., 0., 0., -1.\n",
+        "ALL_BRICKS, GRAV, 3., 1., 0., 0.\n",
+    )
+    text = column((down, "*DLOAD\n" + along)).replace("*ELASTIC", "*DENSITY\n2.\n*ELASTIC", 1)
+    run = keyway(text)
+    assert "'ALL_BRICKS GRAV' of an earlier step ends" in run.stderr
+    assert weights(run, 1) == pytest.approx(12.0 * RAMP, rel=1e-8)
+    assert weights(run, 3) == pytest.approx(-40.0 * (1.0 - RAMP), rel=1e-8, abs=1e-8)
+
+
+def test_a_weight_goes_on_beside_another_direction(keyway):
+    both = "*DLOAD\nALL_BRICKS, GRAV, 10., 0., 0., -1.\nALL_BRICKS, GRAV, 3., 1., 0., 0.\n"
+    text = column((both.rsplit("ALL_BRICKS", 1)[0], both))
+    run = keyway(text.replace("*ELASTIC", "*DENSITY\n2.\n*ELASTIC", 1))
+    assert "of an earlier step ends" not in run.stderr
+    assert weights(run, 1) == pytest.approx(12.0 * RAMP, rel=1e-8)
+    assert weights(run, 3) == pytest.approx(-40.0 * FULL, rel=1e-8)
+
+
 def test_a_temperature_given_again_stays(keyway):
     """A node leaves a history over total time for good; the others go on with it."""
     blocks = brick((1, 1, 1), (1.0, 1.0, 1.0))

@@ -29,6 +29,7 @@ contains
     integer :: step(size(model%cards))
     step = steps_of_cards(model%cards)
     call warn_of_weights(model, step, faults)
+    call warn_of_lost_weights(model, step, faults)
     call warn_of_records(model, step, faults)
     call warn_of_levels(model, faults)
   end subroutine warn_of_loads
@@ -51,6 +52,50 @@ contains
       return
     end do
   end subroutine warn_of_weights
+
+  !> Weights that a line with another direction replaces, so that nothing acts along the old one:
+  !> in CalculiX both act.
+  subroutine warn_of_lost_weights(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: i, s
+    do s = 2, size(model%problem%steps)
+      do i = 1, size(model%problem%steps(s)%loads)
+        associate (work => model%problem%steps(s)%loads(i))
+          if (abs(work%end_factor) > 0.0_rk) cycle
+          select type (old => model%problem%loads(work%load)%item)
+          type is (gravity_load)
+            if (.not. is_turned(model, s, old)) cycle
+            call model%cards(card_of_dload(model, step, s, old%target))%warn( &
+              faults, "'"//old%target//"' of an earlier step ends: this card replaces it by one "// &
+              'of another direction; expected both directions in this step if both act')
+          end select
+        end associate
+      end do
+    end do
+  end subroutine warn_of_lost_weights
+
+  !> Whether a step gives a weight of the same name, but none along the old direction.
+  pure logical function is_turned(model, s, old)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    type(gravity_load), intent(in) :: old
+    integer :: i
+    is_turned = .false.
+    do i = 1, size(model%problem%steps(s)%loads)
+      associate (work => model%problem%steps(s)%loads(i))
+        if (abs(work%end_factor) <= 0.0_rk) cycle
+        select type (new => model%problem%loads(work%load)%item)
+        type is (gravity_load)
+          if (new%target /= old%target) cycle
+          is_turned = abs(dot_product(new%acceleration, old%acceleration)) &
+                      <= round_off*norm2(new%acceleration)*norm2(old%acceleration)
+          if (.not. is_turned) return
+        end select
+      end associate
+    end do
+  end function is_turned
 
   !> The first load of a step that gives weight to an element that has weight in this direction;
   !> `second` is 0 without one.
