@@ -157,7 +157,8 @@ contains
     if (abs(stiffness(material)) > 0.0_rk) then
       call make_solid(model%mesh%element_type(elements(1)), element)
       call model%materials(material)%law%elastic_stiffness(d)
-      call stiffness_matrices(element, x, stiffness(material)*d, ke, status)
+      call stiffness_matrices(element, x, d, ke, status)
+      ke = stiffness(material)*ke ! d is positive definite, its multiple need not be
       if (any(status /= 0)) then
         e = findloc(status /= 0, .true., 1)
         !$omp critical

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import pyvista
 from heat_decks import (
     ALPHA,
     OUTPUT,
@@ -43,6 +44,21 @@ def test_a_free_body_has_no_stress(keyway, element):
     assert np.allclose(components(rows, "THE")[:, :3], STRAIN, rtol=1e-12)
     assert np.abs(components(rows, "THE")[:, 3:]).max() == 0.0
     assert (nodes["TEMP"] == 30.0).all()
+
+
+def test_expansion_on_the_nodes(keyway):
+    """A free C3D8I element bends without stress where the temperature is linear: strain and thermal
+    strain are alpha (T - T0) at its nodes. Of the next points THE would be 0.58 of that."""
+    blocks = brick((1, 1, 1), (1.0, 1.0, 1.0))
+    warmth = 10.0 * (2.0 * blocks.x[:, 2] - 1.0)
+    lines = lines_of(blocks, lambda x: 10.0 + 10.0 * (2.0 * x[:, 2] - 1.0))
+    cards = step("*TEMPERATURE\n" + lines + "*EL FILE\nS, E, THE\n")
+    run = keyway(model(blocks, statically(blocks), element="C3D8I") + cards)
+    on_nodes = pyvista.read(max(run.folder.glob("job_vtk/*.vtu"))).point_data
+    assert np.abs(on_nodes["S"]).max() < 1e-10 * YOUNG * ALPHA * 10.0
+    for name in ("E", "THE"):
+        for axis in range(3):
+            assert on_nodes[name][:, axis] == pytest.approx(ALPHA * warmth, rel=1e-9)
 
 
 @pytest.mark.parametrize("holds_planes", [True, False], ids=["planes", "corners"])

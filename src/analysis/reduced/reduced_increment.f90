@@ -77,7 +77,8 @@ contains
     parts = reshape(force, [size(parts)], pad=force)
   end function to_parts
 
-  !> Goes from `before` to `after`: modes, ports and joints. Without convergence `after` is invalid.
+  !> Goes from `before` to `after`: modes, ports and joints. Without convergence, or with motions that
+  !> are no numbers, `after` is invalid.
   subroutine take_reduced_increment(basis, matrices, model, controls, factors, before, after, &
                                     outcome)
     type(reduced_model), intent(in) :: basis
@@ -96,7 +97,6 @@ contains
       traction = start
       call solve_modes()
       if (operator%num_points == 0) then
-        outcome%has_converged = .true.
         outcome%iterations = 1
       else
         call operator%jumps(before%motion%modal%start, jump)
@@ -108,6 +108,8 @@ contains
         if (.not. outcome%has_converged) return
         call solve_modes()
       end if
+      outcome%has_converged = all(abs(new%y) <= huge(1.0_rk))
+      if (.not. outcome%has_converged) return
     end associate
     call correct(matrices, matrices%operator, before, after)
   contains

@@ -68,8 +68,8 @@ contains
           type is (gravity_load)
             if (.not. is_turned(model, s, old)) cycle
             call model%cards(card_of_dload(model, step, s, old%target))%warn( &
-              faults, "'"//old%target//"' of an earlier step ends: this card replaces it by one "// &
-              'of another direction; expected both directions in this step if both act')
+              faults, "'"//old%target//"' of an earlier step ends: this card replaces it by "// &
+              'one of another direction; expected both directions in this step if both act')
           end select
         end associate
       end do

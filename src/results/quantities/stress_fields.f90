@@ -259,18 +259,18 @@ contains
     call recover_expansions(model, self%plan, now, values)
   end subroutine find_expansions
 
-  !> The thermal strains on the nodes, within the range of the values at the points.
+  !> The thermal strains on the nodes, by the rule of strains and stresses: those that have no stress
+  !> are the strains.
   subroutine expansion_on_nodes(self, model, now, values)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk), allocatable, intent(out) :: values(:, :) !< (6, nodes)
     real(rk), allocatable :: at_points(:, :, :)
-    logical, allocatable :: is_bounded(:)
+    call self%need_inelastic(model, now)
     call self%find_expansions(model, now, at_points)
     allocate (values(6, model%mesh%num_nodes), source=0.0_rk)
-    allocate (is_bounded(self%plan%num_solids), source=.true.)
-    call average_at_nodes(self%plan, at_points, is_bounded, values)
+    call average_at_nodes(self%plan, at_points, self%is_inelastic, values)
   end subroutine expansion_on_nodes
 
   !> Computes the principal stresses on the nodes from the mean tensor, once an increment.
