@@ -77,8 +77,8 @@ contains
     parts = reshape(force, [size(parts)], pad=force)
   end function to_parts
 
-  !> Goes from `before` to `after`: modes, ports and joints. Without convergence, or with motions that
-  !> are no numbers, `after` is invalid.
+  !> Goes from `before` to `after`: modes, ports and joints. Without convergence, or with a motion
+  !> that is not finite, `after` is invalid.
   subroutine take_reduced_increment(basis, matrices, model, controls, factors, before, after, &
                                     outcome)
     type(reduced_model), intent(in) :: basis

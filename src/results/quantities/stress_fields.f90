@@ -259,8 +259,8 @@ contains
     call recover_expansions(model, self%plan, now, values)
   end subroutine find_expansions
 
-  !> The thermal strains on the nodes, by the rule of strains and stresses: those that have no stress
-  !> are the strains.
+  !> The thermal strains on the nodes, by the rule of strains and stresses: those without stress are
+  !> the strains.
   subroutine expansion_on_nodes(self, model, now, values)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
