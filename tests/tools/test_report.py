@@ -262,7 +262,7 @@ def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
     }
     assert estimates(results, ["Largest displacement"]) == [
         ("Largest joint opening",
-         "± 0.5 mm (joints 0.5); springs of joints contribute about 0.1 mm"),
+         "± 0.5 mm (joints 0.5; mesh not estimated); springs of joints contribute about 0.1 mm"),
         ("Mesh, in the stresses of the whole model",
          "25 % in the energy norm, at 1.5 s; of the elastic part alone, 50 % of the volume"),
         ("Increments, in the law of the solids",
@@ -270,6 +270,12 @@ def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
         ("new", "value 2"),
     ]  # fmt: skip
     assert error_beside(results, "U", 1e3, "mm") == "± 1 mm (mesh 1)"
+    known = results.summary["accuracy"]["estimates"]
+    known |= {"displacement": {"error": 2.0, "iteration": 2.0}, "S1": {"error": 3.0, "mesh": 3.0}}
+    assert error_beside(results, "U", 1e3, "mm") == "± 2 mm (iteration 2; mesh not estimated)"
+    assert error_beside(results, "S1", 1e-6, "MPa") == "± 3 MPa (mesh 3)"
+    results.summary["steps"] = [{"procedure": "dynamic"}]
+    assert error_beside(results, "S1", 1e-6, "MPa") == "± 3 MPa (mesh 3; time not estimated)"
 
 
 def test_a_run_killed_early_has_the_rows_of_its_energies(block, tmp_path):
