@@ -291,6 +291,23 @@ def test_a_run_killed_early_has_the_rows_of_its_energies(block, tmp_path):
     assert accuracy(results) == []
 
 
+def test_a_run_killed_later_says_that_its_tables_go_on(block, tmp_path):
+    """job.json is that of the end of the first step, and the page has the largest values of it."""
+    for file in block.glob("block_on_joint*"):
+        if file.is_file():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    results = SiResults(tmp_path)
+    results.summary.update(status="running", steps=results.summary["steps"][:1])
+    name = results.summary["steps"][0]["name"]
+    text = " ".join(words for _, words in verdict(results))
+    assert "What follows holds up to there" not in text
+    assert f"Key numbers, joints and balances below hold up to step {name}, " in text
+    assert "go on: the last row of block_on_joint_energy.csv is that of step 2, increment 4" in text
+    whole = SiResults(tmp_path)
+    whole.summary.update(status="stopped", message="no equilibrium")
+    assert "What follows holds up to there: step " in verdict(whole)[1][1]
+
+
 def test_cracks_without_damage_have_their_energy_and_no_place(block):
     """A law without a damage variable: damage 0 everywhere occurs at no place."""
     results = SiResults(block)
