@@ -162,6 +162,44 @@ def test_columns_with_names_and_a_unit(write):
     assert up.acceleration == pytest.approx(0.02 * VALUES, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("heading", "factor"),
+    [
+        ("time [s], a [g]", 1.0),
+        ("Time (sec.)  a (g)", 1.0),
+        ("# time series [g], t_min = 0", 1.0),
+        ("time [ms], a [g]", 0.001),
+        ("Time (msec)  a (g)", 0.001),
+        ("time_ms, a_g", 0.001),
+        ("# Zeit in ms, a in units of g", 0.001),
+        ("t/ms; a [g]", 0.001),
+    ],
+)
+def test_unit_of_the_times(write, heading, factor):
+    text = heading + "\n" + "".join(f"{10 * k} {value}\n" for k, value in enumerate(VALUES))
+    (record,) = read_record(write(text))
+    assert record.dt == pytest.approx(10.0 * factor, rel=1e-9)
+
+
+def test_channels_have_the_names_of_their_own_headers(write):
+    """The last line of a channel names it too, and stands above the header of the next one."""
+    one, two = cosmos(VALUES).split("Corrected acceleration ")[1:]
+    text = "Corrected acceleration ".join(
+        ["", one.replace("text of the header", "Chan 1: 360 Deg"),
+         two.replace("text of the header", "Chan 2: Up").replace("for Chan 1", "for Chan 2")]
+    )  # fmt: skip
+    assert [r.name for r in read_record(write(text))] == ["channel 1 360 Deg", "channel 2 Up"]
+    end = "/&  ----------  End of data for channel  3  ----------\n"
+    text = csmip(VALUES) + end + csmip(VALUES).replace("Chan  3:  90 Deg", "Chan  4: Up")
+    assert [r.name for r in read_record(write(text))] == ["channel 3 90 Deg", "channel 4 Up"]
+
+
+def test_cosmos_file_with_many_comments(write):
+    text = cosmos(VALUES).replace("   1 Comment", "  50 Comment")
+    records = read_record(write(text.replace("| none\n", "| none\n" * 50)))
+    assert [record.dt for record in records] == [0.01, 0.01]
+
+
 @pytest.mark.parametrize("between", ["; ", ";", "\t", "  "])
 def test_decimal_commas(write, between):
     rows = (f"{0.02 * k:.2f}{between}{v:.6f}\n" for k, v in enumerate(VALUES))
@@ -222,6 +260,9 @@ def test_unit_in_a_heading(text, unit):
         (kyoshin([1, 2]).replace("/6182761", "/0"), {}, "expected Sampling Freq(Hz)"),
         ("# [m/s2]\n0. 1.\n.1 2.\n", {"unit": "G"}, "names the unit M/S2"),
         (at2(VALUES[:4]), {}, "4 values; its header says 9"),
+        (at2(VALUES, "NPTS= 5, DT= .005"), {}, "9 values; its header says 5"),
+        ("time [min], a [g]\n0 1\n1 2\n", {}, "found 'time [min]' in the heading; expected times"),
+        ("time [ms] [g]\n# t in s\n0 1\n1 2\n", {}, "found 'time [ms]' and 't in s' in the head"),
         (
             at2(VALUES).replace("OF G", "OF G, PEAK 40 CM/S2"),
             {},
@@ -328,6 +369,18 @@ def test_command_refuses(write, capsys, arguments, message):
     file = str(write(at2(VALUES), "a.AT2"))
     assert make_motion.main([file if word == "FILE" else word for word in arguments]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_dt_is_for_files_of_one_column(write, tmp_path, capsys):
+    """Values in rows of four are no time with three components."""
+    four, one = write("# [g]\n.1 .2 .3 .4\n.5 .6 .7 .8\n"), write("# [g]\n.1\n.2\n", "a.txt")
+    peer = write(at2(VALUES), "a.AT2")
+    options = ["--dt", "0.01", "--no-pictures", "-o", str(tmp_path / "quake"), "--record"]
+    assert make_motion.main([*options, str(four)]) == 2
+    assert "--dt beside a file of several columns" in capsys.readouterr().err
+    assert make_motion.main([*options, str(peer)]) == 2
+    assert "--dt has no effect: the files say the time between" in capsys.readouterr().err
+    assert make_motion.main([*options, str(one), str(peer)]) == 0
 
 
 def test_dam_takes_any_record(write, tmp_path):

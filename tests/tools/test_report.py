@@ -262,7 +262,7 @@ def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
     }
     assert estimates(results, ["Largest displacement"]) == [
         ("Largest joint opening",
-         "± 0.5 mm (joints 0.5); springs of joints contribute about 0.1 mm"),
+         "± 0.5 mm (joints 0.5; mesh not estimated); springs of joints contribute about 0.1 mm"),
         ("Mesh, in the stresses of the whole model",
          "25 % in the energy norm, at 1.5 s; of the elastic part alone, 50 % of the volume"),
         ("Increments, in the law of the solids",
@@ -270,6 +270,12 @@ def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
         ("new", "value 2"),
     ]  # fmt: skip
     assert error_beside(results, "U", 1e3, "mm") == "± 1 mm (mesh 1)"
+    known = results.summary["accuracy"]["estimates"]
+    known |= {"displacement": {"error": 2.0, "iteration": 2.0}, "S1": {"error": 3.0, "mesh": 3.0}}
+    assert error_beside(results, "U", 1e3, "mm") == "± 2 mm (iteration 2; mesh not estimated)"
+    assert error_beside(results, "S1", 1e-6, "MPa") == "± 3 MPa (mesh 3)"
+    results.summary["steps"] = [{"procedure": "dynamic"}]
+    assert error_beside(results, "S1", 1e-6, "MPa") == "± 3 MPa (mesh 3; time not estimated)"
 
 
 def test_a_run_killed_early_has_the_rows_of_its_energies(block, tmp_path):
@@ -283,6 +289,23 @@ def test_a_run_killed_early_has_the_rows_of_its_energies(block, tmp_path):
     assert "step 2, increment 4, time 2 s, by block_on_joint_energy.csv" in text
     assert key_numbers(results) == []
     assert accuracy(results) == []
+
+
+def test_a_run_killed_later_says_that_its_tables_go_on(block, tmp_path):
+    """job.json is that of the end of the first step, and the page has the largest values of it."""
+    for file in block.glob("block_on_joint*"):
+        if file.is_file():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    results = SiResults(tmp_path)
+    results.summary.update(status="running", steps=results.summary["steps"][:1])
+    name = results.summary["steps"][0]["name"]
+    text = " ".join(words for _, words in verdict(results))
+    assert "What follows holds up to there" not in text
+    assert f"Key numbers, joints and balances below hold up to step {name}, " in text
+    assert "go on: the last row of block_on_joint_energy.csv is that of step 2, increment 4" in text
+    whole = SiResults(tmp_path)
+    whole.summary.update(status="stopped", message="no equilibrium")
+    assert "What follows holds up to there: step " in verdict(whole)[1][1]
 
 
 def test_cracks_without_damage_have_their_energy_and_no_place(block):

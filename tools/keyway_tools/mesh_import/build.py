@@ -91,7 +91,8 @@ def turn_bricks(grouped: GroupedMesh) -> list[str]:
 def arrange(grouped: GroupedMesh) -> tuple[np.ndarray, dict, dict]:
     """An order of the bricks in which sets follow each other, the sets, and those that overlap.
 
-    A brick belongs to the smallest of its groups; bricks of no group are the set SOLID.
+    A brick belongs to the smallest of its groups; bricks of no group are the set SOLID, or SOLID_2
+    where a group has this name.
     """
     count = len(grouped.bricks)
     owner = np.full(count, -1)
@@ -110,12 +111,22 @@ def arrange(grouped: GroupedMesh) -> tuple[np.ndarray, dict, dict]:
             sets[name] = own
         else:
             if own.size:
-                sets[f"{name}_REST"] = own
+                sets[free_name(f"{name}_REST", [*names, *sets])] = own
             more[name] = members
     rest = np.flatnonzero(owner[order] < 0)
     if rest.size:
-        sets["SOLID"] = rest
+        sets[free_name("SOLID", [*names, *sets])] = rest
     return order, sets, more
+
+
+def free_name(name: str, taken: list[str]) -> str:
+    """The name, or with the first number from 2 that makes it a new one."""
+    number = 1
+    found = name
+    while found in taken:
+        number += 1
+        found = f"{name}_{number}"
+    return found
 
 
 def find_surfaces(grouped: GroupedMesh, splits: list[str], notes: list[str]) -> dict:

@@ -1,4 +1,4 @@
-"""A mesh file as nodes, bricks and quads with their groups (meshio reads the file)."""
+"""A mesh file as nodes, bricks and quads with their groups (meshio reads all but decks)."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from pathlib import Path
 
 import meshio
 import numpy as np
+
+from .deck_mesh import read_deck_mesh, same_case
+from .mesh_error import MeshError
 
 CORNERS = {
     "hexahedron": (0, 1, 2, 3, 4, 5, 6, 7),
@@ -33,12 +36,6 @@ DIMENSIONS = {
     **dict.fromkeys(CORNERS, 3), **dict.fromkeys(FACES, 2), "line": 1, "vertex": 0
 }  # fmt: skip
 NUMBERED = ("gmsh:physical", "cell_tags", "medit:ref")  # data that number the groups of cells
-OWN_KINDS = {"C3D8B", "JOINT8", "IFACE4"}  # elements that other programs do not have
-ELEMENT = re.compile(r"\*ELEMENT\s*,(?:.*,)?\s*TYPE\s*=\s*(\w+)")
-
-
-class MeshError(ValueError):
-    """A mesh that cannot become a deck, and what is expected."""
 
 
 @dataclass
@@ -68,16 +65,17 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
         raise MeshError(f"{path}: no such file")
     if not scale > 0.0:
         raise MeshError(f"--scale {scale:g}: expected a factor above 0")
-    notes = notes_of_deck(path) if path.suffix.lower() == ".inp" else []
-    mesh = read_mesh(path)
+    is_deck = path.suffix.lower() == ".inp"
+    mesh, notes = read_deck_mesh(path) if is_deck else (read_mesh(path), [])
     if np.ndim(mesh.points) != 2 or mesh.points.shape[1] > 3:
         raise MeshError(f"{path}: no nodes; expected a mesh of solids")
     refuse_cells(path, mesh)
     x = np.zeros((len(mesh.points), 3))
     x[:, : mesh.points.shape[1]] = scale * mesh.points
     found = GroupedMesh(x, *(gather(mesh, kinds) for kinds in (CORNERS, FACES)))
-    groups, renamed = groups_of_cells(mesh)
-    found.notes = notes + renamed
+    origins = names_of_groups(mesh)
+    groups = groups_of_cells(mesh)
+    found.notes = notes + renamed_groups(origins)
     found.brick_groups = select(groups, mesh, CORNERS)
     found.face_groups = select(groups, mesh, FACES)
     found.node_groups = groups_of_points(mesh, groups)
@@ -107,31 +105,6 @@ def read_mesh(path: Path) -> meshio.Mesh:
     raise MeshError(f"{path}: not a mesh that meshio reads: {reason}")
 
 
-def notes_of_deck(path: Path) -> list[str]:
-    """What is lost of a deck of Abaqus or CalculiX. Error: a deck with parts, of which one alone
-    would be read; a deck with elements of Keyway."""
-    text = path.read_text(encoding="utf-8", errors="replace")
-    cards = [
-        line.upper() for line in text.splitlines() if line.startswith("*") and line[:2] != "**"
-    ]
-    words = {card.partition(",")[0].strip("* \t\r\n") for card in cards}
-    if words & {"PART", "INSTANCE", "ASSEMBLY"}:
-        raise MeshError(
-            f"{path}: a deck with parts and instances; expected a flat mesh: keyway reads such a "
-            "deck itself, with its sets, surfaces and ties"
-        )
-    kinds = {found[1] for card in cards if (found := ELEMENT.match(card))}
-    if own := sorted(kinds & OWN_KINDS):
-        raise MeshError(
-            f"{path}: a deck with elements of Keyway ({', '.join(own)}); expected the mesh of "
-            "another program: keyway reads its own decks itself"
-        )
-    lost = [f"*{word}" for word in ("SURFACE", "TIE", "BOUNDARY") if word in words]
-    if not lost:
-        return []
-    return [f"{', '.join(lost)} of the deck not taken: keyway reads the deck itself, with them"]
-
-
 def refuse_cells(path: Path, mesh: meshio.Mesh) -> None:
     """Error: cells that Keyway has no element for."""
     for block in mesh.cells:
@@ -157,23 +130,39 @@ def gather(mesh: meshio.Mesh, kinds: dict) -> np.ndarray:
     return np.concatenate(rows).astype(int) if rows else np.zeros((0, width), dtype=int)
 
 
-def groups_of_cells(mesh: meshio.Mesh) -> tuple[dict[str, list[np.ndarray]], list[str]]:
-    """For each named group its cells in each block, by position in the block; what was renamed."""
-    groups: dict[str, list[np.ndarray]] = {}
+def names_of_groups(mesh: meshio.Mesh) -> dict[str, str]:
+    """The names of the file by those in the deck. Error: two names that become one."""
+    of_points = [name for name, members in mesh.point_sets.items() if len(members)]
+    of_cells = [name for name, _ in [*named_groups(mesh), *numbered_groups(mesh)]]
     origins: dict[str, str] = {}
-    for name, own in [*named_groups(mesh), *numbered_groups(mesh)]:
+    for name in of_cells + of_points:
         word = deck_name(name)
-        if origins.setdefault(word, name).upper() != name.upper():
+        if same_case(origins.setdefault(word, name)) != same_case(name):
             raise MeshError(
                 f"groups '{origins[word]}' and '{name}' would both be {word}; expected names that "
                 "differ in letters A to Z, digits and underscores"
             )
+    return origins
+
+
+def renamed_groups(origins: dict[str, str]) -> list[str]:
+    """Notes on groups that have another name in the deck."""
+    return [
+        f"group '{name}' is {word} in the deck"
+        for word, name in origins.items()
+        if name.strip().upper() != word
+    ]
+
+
+def groups_of_cells(mesh: meshio.Mesh) -> dict[str, list[np.ndarray]]:
+    """For each named group its cells in each block, by position in the block."""
+    groups: dict[str, list[np.ndarray]] = {}
+    for name, own in [*named_groups(mesh), *numbered_groups(mesh)]:
+        word = deck_name(name)
         # A name may be that of volumes and of faces, or of a set that is also numbered.
         before = groups.get(word, [np.zeros(0, dtype=int)] * len(own))
         groups[word] = [np.union1d(old, new) for old, new in zip(before, own, strict=True)]
-    notes = [f"group '{name}' is {word} in the deck" for word, name in origins.items()
-             if name.strip().upper() != word]  # fmt: skip
-    return groups, notes
+    return groups
 
 
 def named_groups(mesh: meshio.Mesh) -> list[tuple[str, list[np.ndarray]]]:
@@ -231,7 +220,8 @@ def groups_of_points(mesh: meshio.Mesh, groups: dict) -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {}
     for name, members in mesh.point_sets.items():
         if len(members):
-            found[deck_name(name)] = np.unique(np.asarray(members, dtype=int))
+            before = found.get(deck_name(name), np.zeros(0, dtype=int))
+            found[deck_name(name)] = np.union1d(before, np.asarray(members, dtype=int))
     for name, members in groups.items():
         own = [block.data[m].ravel() for block, m in zip(mesh.cells, members, strict=True)
                if block.type == "vertex"]  # fmt: skip

@@ -13,6 +13,18 @@ from .record import FACTORS, Record, RecordError, choose_unit, unit_named_in
 MOST_COMPONENTS = 3
 _SEPARATORS = re.compile(r"[,;\s]+")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d*)?([eEdD][+-]?\d+)?")  # 1,5 or 2
+_SECONDS = r"s|secs?\.?|seconds?|sek\.?|sekunden?"
+_MILLISECONDS = r"ms|msecs?\.?|milliseconds?|millisekunden?"
+_OTHER_TIMES = r"min\.?|minutes?|minuten|h|hours?|[\u00b5\u03bcu]s"
+# A time with its unit: in brackets, below a fraction line or behind "in", or as another word.
+_UNIT_OF_TIME = re.compile(
+    r"(?<![a-z])(?:time|zeit|t)(?:"
+    r"\s*[\[(]\s*([^\])]*?)\s*[\])]"
+    rf"|(?:\s*/\s*|\s+in\s+)({_SECONDS}|{_MILLISECONDS}|{_OTHER_TIMES})(?![a-z])"
+    rf"|[\s_]+({_SECONDS}|{_MILLISECONDS})(?![a-z]))",
+    re.IGNORECASE,
+)
+COLUMNS, ONE_COLUMN = "columns", "one column"  # kinds of files
 EVEN = 1.0e-3  # admissible scatter of the time between values, over its mean
 
 
@@ -23,9 +35,10 @@ def read_columns(path: Path, lines: list[str], unit: str | None, dt: float | Non
     if table.shape[1] == 1:
         if dt is None:
             raise RecordError(f"{path}: one column without times; give the time between them (dt)")
-        step, values = dt, table
+        step, values, layout = dt, table, ONE_COLUMN
     else:
-        step, values = _time_step(path, table[:, 0]), table[:, 1:]
+        step = _time_step(path, _unit_of_time(path, heading) * table[:, 0])
+        values, layout = table[:, 1:], COLUMNS
     if values.shape[1] > MOST_COMPONENTS:
         raise RecordError(
             f"{path}: {values.shape[1] + 1} columns; expected a time and one to three components"
@@ -34,7 +47,7 @@ def read_columns(path: Path, lines: list[str], unit: str | None, dt: float | Non
     unit = choose_unit(path, named, unit, float(np.abs(values).max()))
     names = _names_of(heading, values.shape[1])
     return [
-        Record(FACTORS[unit] * column, step, name, path, "columns", unit)
+        Record(FACTORS[unit] * column, step, name, path, layout, unit)
         for name, column in zip(names, values.T, strict=True)
     ]
 
@@ -78,6 +91,18 @@ def _numbers(text: str) -> list[float] | None:
         return [float(re.sub("[dD]", "e", word)) for word in words]
     except ValueError:
         return None
+
+
+def _unit_of_time(path: Path, heading: list[str]) -> float:
+    """The unit of the times that a heading names [s]; 1 where it names none."""
+    found = [(match[0], match[match.lastindex or 0]) for match in
+             _UNIT_OF_TIME.finditer("\n".join(heading))]  # fmt: skip
+    if all(re.fullmatch(_SECONDS, unit, re.IGNORECASE) for _, unit in found):
+        return 1.0
+    if all(re.fullmatch(_MILLISECONDS, unit, re.IGNORECASE) for _, unit in found):
+        return 1.0e-3
+    names = " and ".join(f"'{name.strip()}'" for name, _ in found)
+    raise RecordError(f"{path}: found {names} in the heading; expected times in s or in ms")
 
 
 def _time_step(path: Path, time: np.ndarray) -> float:

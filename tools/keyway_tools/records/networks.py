@@ -29,16 +29,21 @@ CSMIP_DATA = re.compile(
 )
 FORMAT = re.compile(r"(\d+)\s*[FE]\s*(\d+)\.(\d+)", re.IGNORECASE)
 CHANNEL = re.compile(r"\bCh(?:an|annel)?\s*\.?\s*(\d+)\s*:?\s*([\w .-]{0,12})", re.IGNORECASE)
+END_OF_DATA = re.compile(r"\bEnd[ -]of[ -]data\b", re.IGNORECASE)
 COSMOS_INTERVAL = 62  # number of the real header with the time between values [ms]
 LONGEST_NAME = 12  # of the direction of a PEER record
 NO_NUMBER = re.compile(
     r"nan|inf|\*\*", re.IGNORECASE
 )  # also a number that its field was too narrow for
-MOST_HEADERS = 60  # lines of a channel above its values
+MOST_HEADERS = 60  # lines of a channel above its values, without comments
 
 
-def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> np.ndarray:
-    """The first numbers of some lines, in columns of a width where it is known."""
+def numbers_in(
+    lines: list[str], count: int, width: int | None, path: Path, are_all: bool = False
+) -> np.ndarray:
+    """The first numbers of some lines, in columns of a width where it is known; `are_all`: the
+    lines hold no others.
+    """
     values: list[float] = []
     if count < 2:
         raise RecordError(f"{path}: its header says {count} values; expected a record")
@@ -56,8 +61,10 @@ def numbers_in(lines: list[str], count: int, width: int | None, path: Path) -> n
             raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected numbers") from None
         if not all(map(math.isfinite, values)):
             raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected finite numbers")
-        if len(values) >= count:
+        if len(values) >= count and not are_all:
             return np.array(values[:count])
+    if len(values) == count:
+        return np.array(values)
     raise RecordError(f"{path}: {len(values)} values; its header says {count}")
 
 
@@ -91,7 +98,7 @@ def read_at2(path: Path, lines: list[str], unit: str | None) -> list[Record]:
     _refuse_other_words(path, lines[3])
     if re.search(r"velocity|displacement", lines[2], re.IGNORECASE):
         raise RecordError(f"{path}:3: '{lines[2].strip()[:60]}'; expected an acceleration")
-    values = numbers_in(lines[4:], int(found[1]), None, path)
+    values = numbers_in(lines[4:], int(found[1]), None, path, are_all=True)
     unit = choose_unit(path, _unit_of_at2(path, lines[:3], unit), unit, np.abs(values).max())
     name = lines[1].split(",")[-1].strip()
     if "," not in lines[1] or len(name) > LONGEST_NAME:
@@ -179,10 +186,12 @@ def read_csmip(path: Path, lines: list[str], unit: str | None) -> list[Record]:
 
 
 def _channel_of(heading: list[str], number: int) -> str:
-    """Number and direction of a channel as its header names them."""
+    """Number and direction of a channel as its header names them. The line at the end of the
+    channel before, which the lines above a header may hold, names that channel.
+    """
     for line in heading:
         found = CHANNEL.search(line)
-        if found:
+        if found and not END_OF_DATA.search(line):
             return f"channel {found[1]} {found[2].strip()}".strip()
     return f"channel {number}"
 

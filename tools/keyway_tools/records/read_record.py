@@ -9,6 +9,7 @@ from .networks import (
     AT2_COUNT,
     AT2_OLD_COUNT,
     COSMOS_DATA,
+    COSMOS_REALS,
     CSMIP_DATA,
     MOST_HEADERS,
     read_at2,
@@ -34,7 +35,7 @@ def read_record(path: Path, unit: str | None = None, dt: float | None = None) ->
         records = read_kyoshin(path, lines, unit)
     elif any(CSMIP_DATA.match(line) for line in first):
         records = read_csmip(path, lines, unit)
-    elif any(COSMOS_DATA.match(line) for line in first):
+    elif any(COSMOS_REALS.match(line) or COSMOS_DATA.match(line) for line in first):
         records = read_cosmos(path, lines, unit)
     elif len(lines) > 4 and (AT2_COUNT.search(lines[3]) or AT2_OLD_COUNT.search(lines[3])):
         records = read_at2(path, lines, unit)

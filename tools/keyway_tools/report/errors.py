@@ -39,14 +39,24 @@ def error_beside(results: SiResults, name: str, scale: float, unit: str) -> str:
         parts = (
             f"{part} {scale * found[part]:.4g}"
             for part in _PARTS
-            if abs(found.get(part, 0.0)) > SMALLEST_PART * abs(found["error"])
+            if part in found and abs(found[part]) >= SMALLEST_PART * abs(found["error"])
         )
-        words = f"\u00b1 {scale * found['error']:.4g} {unit} ({', '.join(parts)})"
+        missing = _not_in(results, name, found)
+        words = f"\u00b1 {scale * found['error']:.4g} {unit} ({', '.join(parts)}{missing})"
     if "springs" in found:
         words += f"; springs of joints contribute about {scale * found['springs']:.4g} {unit}"
     if "history" in found:
         words += f"; histories \u00b1 {100.0 * found['history']:.2g} % (time)"
     return words
+
+
+def _not_in(results: SiResults, name: str, found: dict[str, Any]) -> str:
+    """What an error leaves out, in the words of the last lines of job.log."""
+    if "mesh" not in found:
+        return "; mesh not estimated"
+    steps = results.summary.get("steps", [])
+    has_inertia = any(step.get("procedure") == "dynamic" for step in steps)
+    return "; time not estimated" if name in ("S1", "S3") and has_inertia else ""
 
 
 def estimates(results: SiResults, labels: Iterable[str]) -> list[tuple[str, str]]:

@@ -80,7 +80,7 @@ def verdict(results: SiResults) -> list[tuple[str, str]]:
         why = why_incomplete(results.folder, results.job)
         how = "" if status == "running" else f" ({status})"
         found = [("bad", f"The run is incomplete{how}: {why or 'no reason is known'}.")]
-        found.append(("fair", f"What follows holds up to there: {_last_time(results)}."))
+        found.append(("fair", _what_follows(results)))
     found += _stability(summary)
     warnings = summary.get("warnings", [])
     if warnings:
@@ -100,7 +100,7 @@ def _last_time(results: SiResults) -> str:
     """The end of the last step in words."""
     steps = results.summary.get("steps", [])
     if not steps:
-        return _last_row(results)
+        return _of_tables(results)
     last = steps[-1]
     if last.get("procedure") == "frequency":
         return f"step {last['name']} with {_number(len(last.get('frequencies', [])), 'mode')}"
@@ -108,17 +108,41 @@ def _last_time(results: SiResults) -> str:
     return f"step {last['name']}, {increments} to {last.get('time', 0.0):.6g} s of the step"
 
 
-def _last_row(results: SiResults) -> str:
-    """The last increment in job_energy.csv: a run that was killed early has no step in job.json."""
+def _what_follows(results: SiResults) -> str:
+    """Up to where the page of an incomplete run holds: job.json may be older than the tables."""
+    steps = results.summary.get("steps", [])
+    row = _last_row(results)
+    if not steps or row is None or row[:2] <= (len(steps), steps[-1].get("increments", 0)):
+        return f"What follows holds up to there: {_last_time(results)}."
+    return (
+        f"Key numbers, joints and balances below hold up to {_last_time(results)}: "
+        f"{results.job}.json was written then. Tables, curves and saved fields go on: the last row "
+        f"of {results.job}_energy.csv is that of {_in_words(row)}."
+    )
+
+
+def _last_row(results: SiResults) -> tuple[int, int, float] | None:
+    """Step, increment and time of the last row of job_energy.csv."""
     try:
         table = results.table("energy")
         step, increment, time = (table[name][-1] for name in ("step", "increment", "time"))
     except (OSError, KeyError, IndexError, ValueError):
+        return None
+    return int(step), int(increment), float(time)
+
+
+def _in_words(row: tuple[int, int, float]) -> str:
+    return f"step {row[0]}, increment {row[1]}, time {row[2]:.6g} s"
+
+
+def _of_tables(results: SiResults) -> str:
+    """The last increment in job_energy.csv: a run that was killed early has no step in job.json."""
+    row = _last_row(results)
+    if row is None:
         return "no step was computed"
     return (
-        f"step {step:.0f}, increment {increment:.0f}, time {time:.6g} s, by "
-        f"{results.job}_energy.csv; {results.job}.json was not yet written, so that numbers are "
-        "missing below, and pictures and tables are there"
+        f"{_in_words(row)}, by {results.job}_energy.csv; {results.job}.json was not yet written, "
+        "so that numbers are missing below, and pictures and tables are there"
     )
 
 
