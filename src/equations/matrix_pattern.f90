@@ -9,7 +9,7 @@ module matrix_pattern
   implicit none
   private
   public :: pattern, position_of, add_block, add_triples, multiply, diagonal, full_pattern
-  public :: spread_values, drop_zeros
+  public :: spread_values, drop_zeros, add_thin
 
   type :: pattern
     integer :: num_free = 0 !< free unknowns come first
@@ -178,6 +178,25 @@ contains
       thin%free_entries(j) = count_free(thin, j)
     end do
   end subroutine drop_zeros
+
+  !> Adds a multiple of a matrix without its zeros, as `drop_zeros` makes it.
+  pure subroutine add_thin(factor, thin, thin_values, matrix, values)
+    real(rk), intent(in) :: factor
+    type(pattern), intent(in) :: thin !< its entries are some of `matrix`
+    real(rk), intent(in) :: thin_values(:)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:)
+    integer :: j, k, t
+    do j = 1, thin%num_total
+      k = matrix%column_start(j)
+      do t = thin%column_start(j), thin%column_start(j + 1) - 1
+        do while (matrix%row(k) < thin%row(t))
+          k = k + 1
+        end do
+        values(k) = values(k) + factor*thin_values(t)
+      end do
+    end do
+  end subroutine add_thin
 
   !> The full pattern (both triangles) of a symmetric one.
   pure subroutine full_pattern(lower, full)

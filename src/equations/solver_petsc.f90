@@ -13,7 +13,7 @@ module solver_petsc
                              drop_petsc_patch, entries_of_petsc, factor_petsc, finish_petsc, &
                              is_done, is_singular, is_slow, memory_of_petsc, plan_petsc, &
                              rows_of_petsc_patch, shift_of_petsc, solve_petsc, &
-                             solve_petsc_patch, start_petsc, take_petsc_patch
+                             solve_petsc_patch, start_petsc, sum_petsc, take_petsc_patch
   use ranks, only: gather_rows, share_error, this_rank
   use unknown_layout, only: choose_solver, compressed_solver, direct_solver, own_rows, row_layout
   use write_text, only: as_text
@@ -32,7 +32,7 @@ module solver_petsc
     logical, private :: has_failed = .false. !< PETSc has, on this rank or on all
     integer(c_int), private :: method = by_cholesky
     integer(c_size_t), private :: num_entries_given = 0
-    type(row_layout), private :: layout
+    type(row_layout), private :: layout !< its rows alone
   contains
     procedure :: analyse, factorise, solve
     procedure :: num_entries => num_entries_here
@@ -51,17 +51,18 @@ contains
     integer(c_int), allocatable :: row(:), column(:)
     integer :: bounds(2)
     call release(self)
-    self%layout = matrix%layout
+    self%layout%first_row = matrix%layout%first_row
+    self%layout%row = matrix%layout%row
     bounds = own_rows(self%layout, this_rank())
     self%method = by_lu
-    if (matrix%is_symmetric) self%method = method_of(self%layout)
+    if (matrix%is_symmetric) self%method = method_of(matrix%layout)
     call list_places(matrix, bounds, row, column)
     self%num_entries_given = size(row, kind=c_size_t)
     self%handle = start_petsc()
     if (.not. c_associated(self%handle)) then
       call raise(error, 'PETSc could not be started', system_failed)
     else if (plan_petsc(self%handle, self%method, int(bounds(2) - bounds(1) + 1, c_int), &
-                        self%layout%rigid, self%num_entries_given, row, column) /= is_done) then
+                        matrix%layout%rigid, self%num_entries_given, row, column) /= is_done) then
       call raise(error, 'PETSc could not plan the equations (not enough memory?)', system_failed)
       self%has_failed = .true.
     end if
@@ -179,8 +180,10 @@ contains
     if (matrix%num_free == 0) return
     allocate (list(self%num_entries_given))
     call list_values(matrix, values, list)
+    status = sum_petsc(self%handle, list)
+    deallocate (list)
     call use_many_threads(levels)
-    status = factor_petsc(self%handle, self%num_entries_given, list)
+    if (status == is_done) status = factor_petsc(self%handle)
     call use_one_thread(levels)
     if (status == is_singular) then
       call raise(error, 'the stiffness matrix is singular: a part of the model is free to '// &

@@ -169,6 +169,7 @@ contains
     if (allocated(error)) return
     if (now%is_last_of_step) call self%write_envelopes(model, error)
     if (allocated(error)) return
+    call self%record%stresses%free_points()
     call self%costs%start('write', 'log', 'output')
     if (now%increment > 0 .or. starts_analysis(now)) then
       call self%clock%show(model, now, self%record, self%log)

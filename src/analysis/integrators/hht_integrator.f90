@@ -186,6 +186,7 @@ contains
       if (allocated(error)) return
     end if
     self%scheme = make_scheme(plan%alpha, dt, plan%controls%joint_forces)
+    self%system%mass = [real(rk) ::] ! the start of the step has needed all values
     call effective_values(self%system, self%scheme, self%solids%values)
     self%solids%weight = 1.0_rk + plan%alpha
     call self%solids%correction%open(model, 1.0_rk/(self%scheme%gamma*self%solids%weight))
@@ -238,7 +239,8 @@ contains
     type(dam_system), intent(in) :: system
     type(hht), intent(in) :: scheme
     real(rk), allocatable, intent(out) :: values(:)
-    values = (1.0_rk + scheme%alpha)*system%stiffness + scheme%acceleration_of_x*system%mass
+    values = (1.0_rk + scheme%alpha)*system%stiffness
+    call system%add_mass(scheme%acceleration_of_x, values)
     call system%add_damping((1.0_rk + scheme%alpha)*scheme%velocity_of_x, values)
   end subroutine effective_values
 

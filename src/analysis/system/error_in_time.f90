@@ -29,7 +29,7 @@ contains
     type(dam_system), intent(in) :: system
     real(rk), allocatable, intent(out) :: weights(:) !< (num_total) [kg]
     allocate (weights(system%matrix%num_total))
-    call diagonal(system%matrix, system%mass, weights)
+    call diagonal(system%mass_pattern, system%mass_entries, weights)
   end subroutine find_weights
 
   !> Takes in an increment that has converged, and tells how often the next one is to be doubled or,

@@ -13,7 +13,7 @@ module step_damping
   use guest_list, only: add_guest_matrices, any_has_matrix
   use guest_type, only: guest_reference, damping_matrix, mass_matrix, stiffness_matrix
   use kinds, only: rk
-  use matrix_pattern, only: pattern, drop_zeros
+  use matrix_pattern, only: pattern, add_thin, drop_zeros
   use problem_definition, only: problem
   use run_ledger, only: ledger
   use step_plan, only: step
@@ -25,10 +25,8 @@ module step_damping
   type :: damping_sum
     real(rk) :: of_mass = 0.0_rk !< a [1/s]
     real(rk) :: of_stiffness = 0.0_rk !< b [s]
-    !> Values of R in the pattern of the step [N s/m]; not allocated where R is zero
-    real(rk), allocatable, private :: rest(:)
-    type(pattern), private :: thin !< the entries of R that are not zero, for products
-    real(rk), allocatable, private :: entries(:) !< their values
+    type(pattern), private :: thin !< the entries of R that are not zero
+    real(rk), allocatable, private :: entries(:) !< their values [N s/m]; not allocated: R is zero
   contains
     procedure :: is_zero, add_rest_force, add_rest_forces, add_values
   end type damping_sum
@@ -45,6 +43,7 @@ contains
     type(damping_sum), intent(out) :: sum_of_parts
     type(ledger), intent(in) :: costs
     type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: rest(:)
     logical :: materials_differ, has_rest
     real(rk) :: alpha, beta
     alpha = 0.0_rk
@@ -62,28 +61,29 @@ contains
       if (.not. has_rest .and. own%is_zero()) return
       call costs%start('assemble', 'damping', 'solver')
       if (materials_differ) then
-        call assemble_damping(model, numbers, -first%alpha, -first%beta, matrix, own%rest, error)
+        call assemble_damping(model, numbers, -first%alpha, -first%beta, matrix, rest, error)
         if (allocated(error)) return
       else if (has_rest) then
-        allocate (own%rest(size(matrix%row)), source=0.0_rk)
+        allocate (rest(size(matrix%row)), source=0.0_rk)
       end if
       if (has_rest) then
-        call add_guests(model, guests, numbers, matrix, own, costs)
-        call drop_zeros(matrix, own%rest, own%thin, own%entries)
+        call add_guests(model, guests, numbers, matrix, own, rest, costs)
+        call drop_zeros(matrix, rest, own%thin, own%entries)
       end if
       call costs%stop('assemble damping')
     end associate
   end subroutine build_damping_sum
 
   !> The damping of guests, less what the factors give to their masses and stiffnesses.
-  subroutine add_guests(model, guests, numbers, matrix, own, costs)
+  subroutine add_guests(model, guests, numbers, matrix, own, rest, costs)
     type(problem), intent(in) :: model
     type(guest_reference), intent(in) :: guests(:)
     type(numbering), intent(in) :: numbers
     type(pattern), intent(in) :: matrix
-    type(damping_sum), intent(inout) :: own
+    type(damping_sum), intent(in) :: own
+    real(rk), intent(inout) :: rest(:) !< values of R [N s/m]
     type(ledger), intent(in) :: costs
-    call add_guest_matrices(guests, damping_matrix, model, numbers, matrix, own%rest, costs)
+    call add_guest_matrices(guests, damping_matrix, model, numbers, matrix, rest, costs)
     call take_away(mass_matrix, own%of_mass)
     call take_away(stiffness_matrix, own%of_stiffness)
   contains
@@ -93,9 +93,9 @@ contains
       real(rk), intent(in) :: factor
       real(rk), allocatable :: values(:)
       if (.not. (factor > 0.0_rk .and. any_has_matrix(guests, kind))) return
-      allocate (values(size(own%rest)), source=0.0_rk)
+      allocate (values(size(rest)), source=0.0_rk)
       call add_guest_matrices(guests, kind, model, numbers, matrix, values, costs)
-      own%rest = own%rest - factor*values
+      rest = rest - factor*values
     end subroutine take_away
   end subroutine add_guests
 
@@ -124,7 +124,7 @@ contains
   pure logical function is_zero(self)
     class(damping_sum), intent(in) :: self
     is_zero = .not. (self%of_mass > 0.0_rk .or. self%of_stiffness > 0.0_rk &
-                     .or. allocated(self%rest))
+                     .or. allocated(self%entries))
   end function is_zero
 
   !> Adds R v.
@@ -133,7 +133,7 @@ contains
     real(rk), intent(in) :: v(:) !< (num_total)
     real(rk), intent(inout) :: force(:) !< (num_total)
     real(rk) :: product(size(v))
-    if (.not. allocated(self%rest)) return
+    if (.not. allocated(self%entries)) return
     call multiply(self%thin, self%entries, v, product)
     force = force + product
   end subroutine add_rest_force
@@ -144,20 +144,20 @@ contains
     real(rk), intent(in), contiguous :: v(:, :) !< (num_free, velocities)
     real(rk), intent(inout) :: force(:, :) !< (num_free, velocities)
     real(rk), allocatable :: product(:, :)
-    if (.not. allocated(self%rest)) return
+    if (.not. allocated(self%entries)) return
     allocate (product, mold=force)
     call multiply_columns(self%thin, self%entries, v, product)
     force = force + product
   end subroutine add_rest_forces
 
-  !> Adds a multiple of C to the values of a matrix.
-  subroutine add_values(self, factor, mass, stiffness, values)
+  !> Adds a multiple of C, less the part of the mass, to the values of a matrix.
+  subroutine add_values(self, factor, matrix, stiffness, values)
     class(damping_sum), intent(in) :: self
     real(rk), intent(in) :: factor
-    real(rk), intent(in) :: mass(:), stiffness(:) !< values of M and K
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: stiffness(:) !< values of K
     real(rk), intent(inout) :: values(:)
-    if (self%of_mass > 0.0_rk) values = values + (factor*self%of_mass)*mass
     if (self%of_stiffness > 0.0_rk) values = values + (factor*self%of_stiffness)*stiffness
-    if (allocated(self%rest)) values = values + factor*self%rest
+    if (allocated(self%entries)) call add_thin(factor, self%thin, self%entries, matrix, values)
   end subroutine add_values
 end module step_damping

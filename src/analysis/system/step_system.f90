@@ -12,7 +12,7 @@ module step_system
   use constraint_elimination, only: number_step
   use dense_products, only: times, transposed_times
   use global_vectors, only: diagonal, dot, multiply
-  use matrix_pattern, only: pattern, drop_zeros
+  use matrix_pattern, only: pattern, add_thin, drop_zeros
   use matrix_rows, only: lay_out_rows
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_origins
@@ -42,8 +42,10 @@ module step_system
     !> [N]
     real(rk), allocatable :: thermal_force(:)
     real(rk) :: thermal_energy = 0.0_rk !< of elements that are held at their origins [J]
-    real(rk), allocatable :: mass(:) !< values of M, added mass included; size 0 in a static step
-    type(pattern) :: mass_pattern !< of the entries of M that are not zero, for products
+    !> Values of M, added mass included; size 0 in a static step, and once an integrator is content
+    !> with the entries that are not zero
+    real(rk), allocatable :: mass(:)
+    type(pattern) :: mass_pattern !< of the entries of M that are not zero
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
     type(damping_sum) :: damping !< C, but for modal damping
     !> (num_free, modes) U of modal damping: C has the term U U^T; no columns without it
@@ -52,7 +54,8 @@ module step_system
     type(load_group), allocatable :: groups(:)
     type(support), allocatable :: supports(:)
   contains
-    procedure :: find_damping_force, find_damping_forces, add_damping, find_rate_forces
+    procedure :: find_damping_force, find_damping_forces, find_rate_forces
+    procedure :: add_mass, add_damping
     procedure :: find_elastic, stored_energy
     procedure :: add_warming, set_thermal
   end type dam_system
@@ -185,12 +188,21 @@ contains
     end if
   end function stored_energy
 
+  !> Adds a multiple of M to the values of a matrix.
+  subroutine add_mass(self, factor, values)
+    class(dam_system), intent(in) :: self
+    real(rk), intent(in) :: factor
+    real(rk), intent(inout) :: values(:)
+    call add_thin(factor, self%mass_pattern, self%mass_entries, self%matrix, values)
+  end subroutine add_mass
+
   !> Adds a multiple of C, without modal damping, to the values of a matrix.
   subroutine add_damping(self, factor, values)
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: factor
     real(rk), intent(inout) :: values(:)
-    call self%damping%add_values(factor, self%mass, self%stiffness, values)
+    if (self%damping%of_mass > 0.0_rk) call self%add_mass(factor*self%damping%of_mass, values)
+    call self%damping%add_values(factor, self%matrix, self%stiffness, values)
   end subroutine add_damping
 
   !> Numbering, pattern, stiffness of solids and guests, joints.

@@ -187,14 +187,13 @@ static PetscErrorCode check_factor(struct equations *self, int *status)
 }
 
 /* A factor of MUMPS, again where it has lacked room. */
-static PetscErrorCode set_up_factor(struct equations *self, const double *values, int *status)
+static PetscErrorCode set_up_factor(struct equations *self, int *status)
 {
   PC pc;
   PCFailedReason reason;
   int is_repeated = 0, is_indefinite;
   PetscFunctionBegin;
   do {
-    if (is_repeated) PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
     PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
     if (is_repeated) PetscCall(choose_mumps(self->solver, self->method != by_lu,
                                             self->method == by_compressed));
@@ -231,12 +230,18 @@ static PetscErrorCode set_up_blocks(struct equations *self, int *status)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode factor(struct equations *self, const double *values, int *status)
+/* The caller frees the values before the factor takes memory. */
+int keyway_petsc_sum(void *handle, const double *values)
+{
+  struct equations *self = handle;
+  if (forget_solutions(&self->last)) return failed;
+  return MatSetValuesCOO(self->matrix, values, INSERT_VALUES) ? failed : done;
+}
+
+static PetscErrorCode factor(struct equations *self, int *status)
 {
   PetscFunctionBegin;
-  PetscCall(forget_solutions(&self->last));
-  PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
-  if (has_factor(self)) PetscCall(set_up_factor(self, values, status));
+  if (has_factor(self)) PetscCall(set_up_factor(self, status));
   else PetscCall(set_up_blocks(self, status));
   PetscFunctionReturn(0);
 }
@@ -253,11 +258,10 @@ static PetscErrorCode renew_incomplete(struct equations *self, int *is_definite)
   PetscFunctionReturn(0);
 }
 
-int keyway_petsc_factor(void *handle, size_t entries, const double *values)
+int keyway_petsc_factor(void *handle)
 {
   int status = failed;
-  (void)entries;
-  return factor(handle, values, &status) ? failed : status;
+  return factor(handle, &status) ? failed : status;
 }
 
 /* Conjugate gradients, again with a larger shift where a direction shows in which the incomplete

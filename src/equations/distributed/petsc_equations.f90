@@ -4,7 +4,8 @@ module petsc_equations
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_ptr, c_size_t
   implicit none
   private
-  public :: has_petsc, start_petsc, plan_petsc, factor_petsc, solve_petsc, finish_petsc
+  public :: has_petsc, start_petsc, plan_petsc, sum_petsc, factor_petsc, solve_petsc
+  public :: finish_petsc
   public :: entries_of_petsc, memory_of_petsc, shift_of_petsc
   public :: take_petsc_patch, rows_of_petsc_patch, solve_petsc_patch, drop_petsc_patch
   public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
@@ -46,14 +47,21 @@ module petsc_equations
       integer(c_int) :: status
     end function plan_petsc
 
-    !> Sums the entries of all ranks, and prepares the solver.
-    function factor_petsc(handle, entries, values) result(status) &
-      bind(c, name='keyway_petsc_factor')
-      import :: c_double, c_int, c_ptr, c_size_t
+    !> Sums the entries of all ranks.
+    function sum_petsc(handle, values) result(status) bind(c, name='keyway_petsc_sum')
+      import :: c_double, c_int, c_ptr
       implicit none
       type(c_ptr), value :: handle
-      integer(c_size_t), value :: entries
-      real(c_double), intent(in) :: values(entries)
+      ! allow(assumed-size)
+      real(c_double), intent(in) :: values(*) !< in the order of the planned entries
+      integer(c_int) :: status
+    end function sum_petsc
+
+    !> Prepares the solver for the sum.
+    function factor_petsc(handle) result(status) bind(c, name='keyway_petsc_factor')
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: handle
       integer(c_int) :: status
     end function factor_petsc
 

@@ -14,9 +14,15 @@ int keyway_petsc_plan(void *handle, int method, int rows, const double *rigid, s
   return failed;
 }
 
-int keyway_petsc_factor(void *handle, size_t entries, const double *values)
+int keyway_petsc_sum(void *handle, const double *values)
 {
-  (void)handle, (void)entries, (void)values;
+  (void)handle, (void)values;
+  return failed;
+}
+
+int keyway_petsc_factor(void *handle)
+{
+  (void)handle;
   return failed;
 }
 

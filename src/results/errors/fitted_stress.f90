@@ -5,11 +5,11 @@ module fitted_stress
   use kinds, only: rk
   use shape_hex8, only: point_shape
   use small_matrix, only: solve_dense
-  use stress_error, only: compare_smooth, smoothing_plan
+  use stress_error, only: smoothing_plan
   use stress_recovery, only: recovery_plan, max_points
   implicit none
   private
-  public :: patch_fit, make_patch_fit, fitted_defect
+  public :: patch_fit, make_patch_fit, fit_stress
 
   integer, parameter :: terms = 4 !< 1, x, y, z
 
@@ -123,19 +123,18 @@ contains
     own(2:) = (x - fit%x(:, patch))/fit%size(patch)
   end function terms_at
 
-  !> The fitted stress less the stress of the elements, at 2 x 2 x 2 points of every solid.
-  subroutine fitted_defect(mesh, plan, smoothing, fit, stress, defect)
+  !> The fitted stress at each patch.
+  subroutine fit_stress(mesh, plan, smoothing, fit, stress, smooth)
     type(fe_mesh), intent(in) :: mesh
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
     type(patch_fit), intent(in) :: fit
     real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
-    real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
-    real(rk), allocatable :: slope(:, :, :), smooth(:, :)
+    real(rk), allocatable, intent(out) :: smooth(:, :) !< (6, patches) [Pa]
+    real(rk), allocatable :: slope(:, :, :)
     call solve_patches(mesh, plan, smoothing, fit, stress, slope)
     call evaluate_patches(plan, smoothing, fit, slope, smooth)
-    call compare_smooth(plan, smoothing, smooth, stress, defect)
-  end subroutine fitted_defect
+  end subroutine fit_stress
 
   !> The coefficients of the fits, by least squares over the points of the solids of a patch.
   subroutine solve_patches(mesh, plan, smoothing, fit, stress, slope)

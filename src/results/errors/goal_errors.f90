@@ -27,7 +27,6 @@ module goal_errors
     procedure, private :: is_of
   end type goal_error
 
-  integer, parameter :: modes_at_once = 5 !< whose stresses are in memory together
   !> Of a result: what springs of joints may contribute as an error.
   real(rk), parameter :: largest_share = 0.25_rk
   real(rk), parameter :: roundoff = 1.0e-9_rk !< of a result that is computed twice
@@ -184,14 +183,9 @@ contains
     !> (modes) [1/s2]; not allocated where that of a mode is not known
     real(rk), allocatable, intent(out) :: stiffening(:)
     logical :: is_known(size(shape, 3))
-    integer :: k, last
     call stresses%need_smoothing(model)
     allocate (stiffening(size(shape, 3)))
-    do k = 1, size(shape, 3), modes_at_once
-      last = min(size(shape, 3), k + modes_at_once - 1)
-      call weigh_own_defects(model, stresses%plan, stresses%smoothing, shape(:, :, k:last), &
-                             stiffening(k:last), is_known(k:last))
-    end do
+    call weigh_own_defects(model, stresses%plan, stresses%smoothing, shape, stiffening, is_known)
     if (.not. all(is_known)) deallocate (stiffening)
   end subroutine find_stiffening
 

@@ -70,7 +70,7 @@ contains
     type(recovered_fields), intent(inout) :: stresses
     integer, intent(in) :: solids(:)
     real(rk), allocatable, intent(out) :: values(:, :, :) !< (6, max_points, solids)
-    call stresses%need_points(model, now)
+    call stresses%need_point_strain(model, now)
     values = stresses%point_strain(:, :, solids)
   end subroutine strain_of_solids
 

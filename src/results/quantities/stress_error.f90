@@ -18,8 +18,8 @@ module stress_error
   use thermal_expansion, only: expands_alike
   implicit none
   private
-  public :: smoothing_plan, make_smoothing_plan, stress_defect, compare_smooth, energy_of_stresses
-  public :: repeat_single_points, add_hourglass_energy, hides_error
+  public :: smoothing_plan, make_smoothing_plan, average_patches, defect_of_solid
+  public :: energy_of_stresses, repeat_single_points, add_hourglass_energy, hides_error
 
   !> Share of the strain energy in solids without neighbours above which nothing is known of the
   !> error: a stress that jumps to no other one has no defect. Below, what is missed is small
@@ -171,36 +171,19 @@ contains
     end do
   end subroutine repeat_single_points
 
-  !> The smooth stress less the stress of the elements, at 2 x 2 x 2 points of every solid.
-  subroutine stress_defect(plan, smoothing, stress, is_bounded, defect)
-    type(recovery_plan), intent(in) :: plan
-    type(smoothing_plan), intent(in) :: smoothing
-    real(rk), intent(in), contiguous :: stress(:, :, :) !< (6, max_points, solids) [Pa]
-    logical, intent(in) :: is_bounded(:) !< (solids) corners take the value of the nearest point
-    real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
-    real(rk), allocatable :: smooth(:, :)
-    call average_patches(plan, smoothing, stress, is_bounded, smooth)
-    call compare_smooth(plan, smoothing, smooth, stress, defect)
-  end subroutine stress_defect
-
-  !> The stress between the values of patches less the stress of the elements.
-  subroutine compare_smooth(plan, smoothing, smooth, stress, defect)
-    type(recovery_plan), intent(in) :: plan
+  !> The stress between the values of patches less the stress of the element, at 2 x 2 x 2 points
+  !> of a solid.
+  pure function defect_of_solid(smoothing, smooth, solid, stress) result(defect)
     type(smoothing_plan), intent(in) :: smoothing
     real(rk), intent(in) :: smooth(:, :) !< (6, patches) [Pa]
-    real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
-    real(rk), intent(out), contiguous :: defect(:, :, :) !< (6, max_points, solids) [Pa]
+    integer, intent(in) :: solid !< position in the plan
+    real(rk), intent(in) :: stress(6, max_points) !< of the element [Pa]
+    real(rk) :: defect(6, max_points) !< [Pa]
     real(rk) :: at_corner(6, 8)
-    integer :: s
-    !$omp parallel do default(none) shared(plan, smoothing, stress, smooth, defect) &
-    !$omp private(at_corner) schedule(static) if (plan%num_solids > fewest_for_threads)
-    do s = 1, plan%num_solids
-      at_corner = smooth(:, smoothing%patch(:, s))
-      call sum_tensors(8, at_corner, point_shape, 8, defect(:, :, s))
-      defect(:, :, s) = defect(:, :, s) - stress(:, :, s)
-    end do
-    !$omp end parallel do
-  end subroutine compare_smooth
+    at_corner = smooth(:, smoothing%patch(:, solid))
+    call sum_tensors(8, at_corner, point_shape, 8, defect)
+    defect = defect - stress
+  end function defect_of_solid
 
   !> The mean of the corners in each patch.
   subroutine average_patches(plan, smoothing, stress, is_bounded, smooth)
@@ -233,29 +216,33 @@ contains
     end do
   end subroutine average_patches
 
-  !> The integral of first : D^-1 : second over each solid.
-  subroutine energy_of_stresses(model, plan, smoothing, first, second, energy)
+  !> The integral of sigma : D^-1 : sigma over each solid: of its stress or, where a smooth stress
+  !> is given, of the difference of the two.
+  subroutine energy_of_stresses(model, plan, smoothing, stress, energy, smooth)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(smoothing_plan), intent(in) :: smoothing
-    real(rk), intent(in) :: first(:, :, :), second(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(in) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     real(rk), intent(out) :: energy(:) !< (solids) [J]
-    real(rk) :: compliance(6, 6), strain(6)
+    real(rk), intent(in), optional :: smooth(:, :) !< (6, patches) [Pa]
+    real(rk) :: compliance(6, 6), strain(6), own(6, max_points)
     integer :: s, q, m, j
-    !$omp parallel do default(none) shared(model, plan, smoothing, first, second, energy) &
-    !$omp private(compliance, strain, q, m, j) schedule(static) &
+    !$omp parallel do default(none) shared(model, plan, smoothing, stress, smooth, energy) &
+    !$omp private(compliance, strain, own, q, m, j) schedule(static) &
     !$omp if (plan%num_solids > fewest_for_threads)
     do s = 1, plan%num_solids
       m = model%mesh%material_of_element(plan%element_of_solid(s))
       energy(s) = 0.0_rk
       if (m == 0) cycle
       compliance = smoothing%compliance(:, :, m)
+      own = stress(:, :, s)
+      if (present(smooth)) own = defect_of_solid(smoothing, smooth, s, own)
       do q = 1, max_points
         strain = 0.0_rk
         do j = 1, 6
-          strain = strain + compliance(:, j)*second(j, q, s)
+          strain = strain + compliance(:, j)*own(j, q)
         end do
-        energy(s) = energy(s) + smoothing%volume(q, s)*sum(first(:, q, s)*strain)
+        energy(s) = energy(s) + smoothing%volume(q, s)*sum(own(:, q)*strain)
       end do
     end do
     !$omp end parallel do

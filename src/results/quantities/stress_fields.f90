@@ -10,8 +10,8 @@ module stress_fields
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
-  use stress_error, only: smoothing_plan, make_smoothing_plan, stress_defect, energy_of_stresses, &
-                          repeat_single_points, add_hourglass_energy
+  use stress_error, only: smoothing_plan, make_smoothing_plan, average_patches, &
+                          energy_of_stresses, repeat_single_points, add_hourglass_energy
   implicit none
   private
   public :: recovered_fields, principals
@@ -24,9 +24,12 @@ module stress_fields
     logical :: has_plan = .false., has_operator = .false. !< made once for each stage
     integer :: stage = 0 !< that the plan is made for
     logical :: has_inelastic = .false. !< valid for this increment
-    logical :: has_points = .false., has_node_strain = .false. !< valid for this increment
+    logical :: has_points = .false. !< stresses at the points, valid for this increment
+    logical :: has_point_strain = .false., has_node_strain = .false. !< likewise
     logical :: has_node_stress = .false., has_principals = .false.
     logical :: has_point_principals = .false. !< valid for this increment
+    logical :: uses_points = .false. !< in this increment
+    logical :: used_points = .false. !< in the increment before
     integer :: num_recoveries = 0 !< number of requests for stresses on the nodes
     logical :: had_operator = .false. !< at the checkpoint that the run goes on from
     type(nodal_operator) :: operator
@@ -39,14 +42,15 @@ module stress_fields
     logical :: has_smoothing = .false. !< made once for each stage
     logical :: has_error = .false. !< valid for this increment
     type(smoothing_plan) :: smoothing
-    real(rk), allocatable :: defect(:, :, :) !< (6, max_points, solids) smooth less own stress [Pa]
     !> (solids) squares of the energy norms of the error and of the stress [J]
     real(rk), allocatable :: error_energy(:), stress_energy(:)
   contains
     procedure :: invalidate
+    procedure :: free_points
     procedure :: need_plan
     procedure :: need_inelastic
     procedure :: need_points
+    procedure :: need_point_strain
     procedure :: need_points_of
     procedure :: need_node_strain
     procedure :: need_node_stress
@@ -68,12 +72,28 @@ contains
     class(recovered_fields), intent(inout) :: self
     self%has_inelastic = .false.
     self%has_points = .false.
+    self%has_point_strain = .false.
     self%has_node_strain = .false.
     self%has_node_stress = .false.
     self%has_principals = .false.
     self%has_point_principals = .false.
     self%has_error = .false.
+    self%used_points = self%uses_points
+    self%uses_points = .false.
   end subroutine invalidate
+
+  !> Frees the values at points at the end of an increment, unless this increment and the one before
+  !> have used them: the next one then needs them, too. In most runs that are few increments.
+  subroutine free_points(self)
+    class(recovered_fields), intent(inout) :: self
+    if (self%uses_points .and. self%used_points) return
+    self%has_points = .false.
+    self%has_point_strain = .false.
+    self%has_point_principals = .false.
+    if (allocated(self%point_strain)) deallocate (self%point_strain)
+    if (allocated(self%point_stress)) deallocate (self%point_stress)
+    if (allocated(self%point_principal)) deallocate (self%point_principal)
+  end subroutine free_points
 
   !> Makes the plan unless it exists.
   subroutine need_plan(self, model)
@@ -91,8 +111,8 @@ contains
     type(recovered_fields), intent(inout) :: self
     self%has_operator = .false.
     self%has_smoothing = .false.
-    if (allocated(self%point_strain)) deallocate (self%point_strain, self%point_stress)
-    if (allocated(self%point_principal)) deallocate (self%point_principal)
+    self%uses_points = .false.
+    call self%free_points()
   end subroutine forget_plan
 
   !> Finds the solids and nodes that have left elasticity, once an increment.
@@ -110,19 +130,33 @@ contains
     self%has_inelastic = .true.
   end subroutine need_inelastic
 
-  !> Computes strains and stresses at the points, once an increment.
+  !> Computes stresses at the points, once an increment.
   subroutine need_points(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_points) return
     call self%need_inelastic(model, now)
-    call allocate_points(self)
-    call recover_points(model, self%plan, now, self%point_strain, self%point_stress)
+    call open_points(self%plan%num_solids, self%point_stress)
+    self%uses_points = .true.
+    call recover_points(model, self%plan, now, stress=self%point_stress)
     self%has_points = .true.
   end subroutine need_points
 
-  !> Computes strains and stresses at the points of some solids; those of others stay outdated.
+  !> Computes strains at the points, once an increment.
+  subroutine need_point_strain(self, model, now)
+    class(recovered_fields), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    if (self%has_point_strain) return
+    call self%need_inelastic(model, now)
+    call open_points(self%plan%num_solids, self%point_strain)
+    self%uses_points = .true.
+    call recover_points(model, self%plan, now, strain=self%point_strain)
+    self%has_point_strain = .true.
+  end subroutine need_point_strain
+
+  !> Computes stresses at the points of some solids; those of others stay outdated.
   subroutine need_points_of(self, model, now, is_wanted)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -130,17 +164,18 @@ contains
     logical, intent(in) :: is_wanted(:) !< (solids)
     if (self%has_points) return
     call self%need_inelastic(model, now)
-    call allocate_points(self)
-    call recover_some(model, self%plan, now, is_wanted, self%point_strain, self%point_stress)
+    call open_points(self%plan%num_solids, self%point_stress)
+    self%uses_points = .true.
+    call recover_some(model, self%plan, now, is_wanted, self%point_stress)
   end subroutine need_points_of
 
-  !> Allocates strains and stresses at the points.
-  subroutine allocate_points(self)
-    class(recovered_fields), intent(inout) :: self
-    if (allocated(self%point_strain)) return
-    allocate (self%point_strain(6, max_points, self%plan%num_solids), source=0.0_rk)
-    allocate (self%point_stress(6, max_points, self%plan%num_solids), source=0.0_rk)
-  end subroutine allocate_points
+  !> Allocates strains or stresses at the points, unless the increment before has left its own.
+  subroutine open_points(num_solids, values)
+    integer, intent(in) :: num_solids
+    real(rk), allocatable, intent(inout) :: values(:, :, :)
+    if (allocated(values)) return
+    allocate (values(6, max_points, num_solids), source=0.0_rk)
+  end subroutine open_points
 
   !> Computes strains on the nodes, once an increment.
   subroutine need_node_strain(self, model, now)
@@ -148,7 +183,7 @@ contains
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_node_strain) return
-    call self%need_points(model, now)
+    call self%need_point_strain(model, now)
     if (.not. allocated(self%node_strain)) allocate (self%node_strain(6, model%mesh%num_nodes))
     call average_at_nodes(self%plan, self%point_strain, self%is_inelastic, self%node_strain)
     self%has_node_strain = .true.
@@ -197,14 +232,15 @@ contains
     logical, allocatable :: is_copied(:)
     integer :: k, i, s
     if (size(self%inelastic_nodes) == 0) return
-    call allocate_points(self)
+    call open_points(self%plan%num_solids, self%point_stress)
+    self%uses_points = .true.
     allocate (is_copied(self%plan%num_solids), source=.false.)
     do k = 1, size(self%inelastic_nodes)
       associate (start => self%plan%node_start, node => self%inelastic_nodes(k))
         do i = start(node), start(node + 1) - 1
           s = (self%plan%corner(i) - 1)/8 + 1
           if (is_copied(s)) cycle
-          call copy_solid(self%plan, now, s, self%point_strain, self%point_stress)
+          call copy_solid(self%plan, now, s, stress=self%point_stress)
           is_copied(s) = .true.
         end do
       end associate
@@ -321,21 +357,20 @@ contains
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
+    real(rk), allocatable :: smooth(:, :)
     if (self%has_error) return
     call self%need_points(model, now)
     call self%need_smoothing(model)
-    if (.not. allocated(self%defect)) then
-      allocate (self%defect(6, max_points, self%plan%num_solids))
+    if (.not. allocated(self%error_energy)) then
       allocate (self%error_energy(self%plan%num_solids), self%stress_energy(self%plan%num_solids))
     end if
     call repeat_single_points(self%plan, self%point_stress)
-    call stress_defect(self%plan, self%smoothing, self%point_stress, self%is_inelastic, &
-                       self%defect)
-    call energy_of_stresses(model, self%plan, self%smoothing, self%defect, self%defect, &
-                            self%error_energy)
+    call average_patches(self%plan, self%smoothing, self%point_stress, self%is_inelastic, smooth)
+    call energy_of_stresses(model, self%plan, self%smoothing, self%point_stress, &
+                            self%error_energy, smooth)
     call add_hourglass_energy(model, self%plan, now, self%error_energy)
     call energy_of_stresses(model, self%plan, self%smoothing, self%point_stress, &
-                            self%point_stress, self%stress_energy)
+                            self%stress_energy)
     self%has_error = .true.
   end subroutine need_error
 

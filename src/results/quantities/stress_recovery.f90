@@ -172,13 +172,13 @@ contains
     end subroutine visit_corners
   end subroutine link_corners
 
-  !> Strain and stress at the points of all solids; one thread a block.
+  !> Strain, stress or both at the points of all solids; one thread a block.
   subroutine recover_points(model, plan, now, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
-    real(rk), intent(inout) :: strain(:, :, :) !< (6, max_points, solids)
-    real(rk), intent(inout) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
+    real(rk), intent(inout), optional :: strain(:, :, :) !< (6, max_points, solids)
+    real(rk), intent(inout), optional :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     integer :: i
     !$omp parallel do default(none) shared(model, plan, now, strain, stress) &
     !$omp schedule(dynamic, 4) if (model%mesh%num_nodes > fewest_for_threads)
@@ -188,13 +188,12 @@ contains
     !$omp end parallel do
   end subroutine recover_points
 
-  !> Strain and stress at the points of some solids; the values of others remain.
-  subroutine recover_some(model, plan, now, is_wanted, strain, stress)
+  !> Stress at the points of some solids; the values of others remain.
+  subroutine recover_some(model, plan, now, is_wanted, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     logical, intent(in) :: is_wanted(:) !< (solids)
-    real(rk), intent(inout) :: strain(:, :, :) !< (6, max_points, solids)
     real(rk), intent(inout) :: stress(:, :, :) !< (6, max_points, solids) [Pa]
     type(element_block) :: part
     integer :: i
@@ -202,17 +201,17 @@ contains
       if (.not. any(is_wanted(plan%blocks(i)%solids))) cycle
       part = plan%blocks(i)
       part%solids = pack(part%solids, is_wanted(part%solids))
-      call recover_part(model, plan, part, now, strain, stress)
+      call recover_part(model, plan, part, now, stress=stress)
     end do
   end subroutine recover_some
 
-  !> Strain and stress of one block, or of a part of it.
+  !> Strain, stress or both of one block, or of a part of it.
   subroutine recover_part(model, plan, part, now, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     type(state), intent(in) :: now
-    real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
+    real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
     integer :: k
     if (.not. part%is_inelastic) then
       call recover_block(model, plan, part, now, strain, stress)
@@ -221,21 +220,21 @@ contains
     do k = 1, size(part%solids)
       call copy_solid(plan, now, part%solids(k), strain, stress)
     end do
-    call add_expansions(model, plan, part, now, strain)
+    if (present(strain)) call add_expansions(model, plan, part, now, strain)
   end subroutine recover_part
 
-  !> Strain and stress of one solid with states.
+  !> Strain, stress or both of one solid with states.
   subroutine copy_solid(plan, now, solid, strain, stress)
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     integer, intent(in) :: solid !< of an inelastic block
-    real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
+    real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
     integer :: n, before
     n = plan%num_points(solid)
     before = plan%points_before(solid)
     associate (points => now%points(plan%inelastic_block(solid)))
-      strain(:, :n, solid) = points%strain(:, before + 1:before + n)
-      stress(:, :n, solid) = points%stress(:, before + 1:before + n)
+      if (present(strain)) strain(:, :n, solid) = points%strain(:, before + 1:before + n)
+      if (present(stress)) stress(:, :n, solid) = points%stress(:, before + 1:before + n)
     end associate
   end subroutine copy_solid
 
@@ -271,13 +270,13 @@ contains
     !$omp end parallel do
   end subroutine recover_expansions
 
-  !> Strain and stress of one elastic block.
+  !> Strain, stress or both of one elastic block.
   subroutine recover_block(model, plan, part, now, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     type(state), intent(in) :: now
-    real(rk), intent(inout) :: strain(:, :, :), stress(:, :, :)
+    real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
     real(rk), allocatable :: found(:, :, :)
     real(rk) :: d(6, 6)
     integer :: k, q, n, points
@@ -292,12 +291,13 @@ contains
     end if
     call take_thermal(model, now, plan%element_of_solid(part%solids), found)
     do k = 1, n
-      strain(:, :points, part%solids(k)) = found(:, :, k)
+      if (present(strain)) strain(:, :points, part%solids(k)) = found(:, :, k)
+      if (.not. present(stress)) cycle
       do q = 1, points
         stress(:, q, part%solids(k)) = matmul(d, found(:, q, k))
       end do
     end do
-    call add_expansions(model, plan, part, now, strain)
+    if (present(strain)) call add_expansions(model, plan, part, now, strain)
   end subroutine recover_block
 
   !> Strains of elements whose strain is the symmetric gradient.

@@ -9,7 +9,7 @@ program test_matrix_pattern
   use dof_numbering, only: numbering, linear_links, number_unknowns
   use jump_links, only: nodal_points, link_nodes, pairs_of_nodes
   use matrix_pattern, only: pattern, position_of, multiply, diagonal, full_pattern, &
-                            spread_values, drop_zeros
+                            spread_values, drop_zeros, add_thin
   use pattern_builder, only: build_pattern
   use joint_stiffness, only: add_joint_stiffness
   use scatter_matrix, only: scatter_nodes
@@ -70,7 +70,7 @@ contains
   end subroutine entries
 
   subroutine products()
-    real(rk), allocatable :: values(:), full_values(:), thin_values(:)
+    real(rk), allocatable :: values(:), full_values(:), thin_values(:), sums(:)
     real(rk) :: q(18), y(18), z(18), d(18), dense(18, 18)
     type(pattern) :: thin
     integer :: j, k
@@ -99,6 +99,9 @@ contains
     call check(log, all(abs(z - y) <= 1.0e-14_rk*norm2(dense)), 'A q without its zeros')
     call check(log, size(thin_values) < size(values), 'zeros are dropped')
     call check(log, all(thin%row(thin%column_start(:18)) == [(j, j=1, 18)]), 'not on the diagonal')
+    sums = -3.0_rk*values
+    call add_thin(3.0_rk, thin, thin_values, lower, sums)
+    call check(log, all(abs(sums) <= 0.0_rk), 'all entries without the zeros, at their places')
   end subroutine products
 
   subroutine joints()

@@ -23,6 +23,7 @@ program test_law_fields
   call test_widths(log)
   call test_elastic_points(log)
   call test_cracked_points(log)
+  call test_freed_points(log)
   print '(i0,a,i0,a)', log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -156,6 +157,28 @@ contains
     end do
     call check(log, seen > 0, 'the last element has a free corner')
   end subroutine check_near_points
+
+  !> Stresses at points that one increment alone has used do not stay in memory; those that two
+  !> increments in a row have used do.
+  subroutine test_freed_points(log)
+    type(test_log), intent(inout) :: log
+    type(recovered_fields) :: fields
+    real(rk), allocatable :: first(:, :, :)
+    integer :: i
+    do i = 1, 3
+      call fields%invalidate()
+      call fields%need_points(model, now)
+      call check(log,.not. allocated(fields%point_strain), 'stresses need no strains in memory')
+      if (i == 1) first = fields%point_stress
+      call check_close(log, maxval(abs(fields%point_stress - first)), 0.0_rk, 0.0_rk, &
+                       'the same stresses after they were freed')
+      call fields%free_points()
+      call check(log, allocated(fields%point_stress) .eqv. i > 1, 'stresses stay where they pay')
+    end do
+    call fields%invalidate()
+    call fields%free_points()
+    call check(log,.not. allocated(fields%point_stress), 'stresses without use are freed')
+  end subroutine test_freed_points
 
   !> The stress of the `times`-th request in a run; the third request makes the operator.
   subroutine stress_on_nodes(body, times, stress)
