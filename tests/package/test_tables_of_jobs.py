@@ -54,6 +54,8 @@ def test_the_table_of_a_set_has_its_members(block):
     assert nodes(block.node("K_R")) == {2101}
     with pytest.raises(LookupError, match="no table 'node_K_R_'"):
         block.node("K R_")
+    names = {word: block._results.set_of_table(word) for word in ("K_R", "K_R_5", "HEEL")}
+    assert names == {"K_R": "K R", "K_R_5": "K_R", "HEEL": "HEEL"}  # in titles of curves
 
 
 def test_letters_beyond_ascii_are_a_mark_for_each_byte(block):

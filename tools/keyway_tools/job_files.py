@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import glob
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -97,6 +99,16 @@ def table_of(results: Results, kind: str, name: str) -> str:
     what = "no table has" if not fitting else f"{', '.join(fitting)} have"
     raise LookupError(f"{what} the members of '{name}' in {results.folder}; "
                       "take a table by its own name")  # fmt: skip
+
+
+def name_of_table(results: Results, kind: str, word: str, names: Iterable[str]) -> str | None:
+    """The name whose table is KIND_WORD, where several names share a word in files; else None."""
+    alike = [name for name in names if f"{word}_".startswith(f"{as_file_word(name)}_")]
+    for name in alike if len(alike) > 1 else ():
+        with contextlib.suppress(LookupError):
+            if table_of(results, kind, name) == f"{kind}_{word}":
+                return name
+    return None
 
 
 def _fits(results: Results, kind: str, table: str, link: str) -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .job_files import job_of_file, tables_of
+from .job_files import job_of_file, name_of_table, tables_of
 from .joint_faces import JointFaces, read_joint_faces
 from .program import DamagedFileError
 from .result_files import Table, as_array, as_file_word, load_json, natural, read_table
@@ -153,7 +153,8 @@ class Results:
 
     def set_of_table(self, word: str) -> str:
         """The set of the table node_WORD, as job.h5 names it."""
-        return _written_as(word, self.file.get("sets/nodes", {}))
+        names = self.file.get("sets/nodes", {})
+        return name_of_table(self, "node", word, names) or _written_as(word, names)
 
     def step_name(self, step: int) -> str:
         """The name of a step."""
