@@ -1,11 +1,13 @@
-"""Writes docs/keywords.md, the reference of all keywords, from the output of the program.
+"""Writes docs/keywords.md, the reference of all keywords, from the output of the program, and the
+parameters of each keyword for the reader of decks in Python.
 
-usage: make_keywords.py [--program PATH] [-o FILE]
+usage: make_keywords.py [--program PATH] [-o FILE] [--parameters FILE]
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import subprocess
 import sys
@@ -15,6 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "keywords.md"
+PARAMETERS = ROOT / "tools" / "keyway" / "deck" / "parameters.json"
 WIDTH = 116  # letters of a line of the page
 HELP_WIDTH = 96  # letters of a line of keyway --keywords
 FIELD_WIDTH = 21  # where the text of a parameter begins in keyway --keywords
@@ -175,12 +178,27 @@ def render(program: Path) -> str:
     return "\n".join(parts)
 
 
+def render_parameters(program: Path) -> str:
+    """The names of the parameters of each keyword as JSON, a line a keyword."""
+    names = [name for _, family in read_families(ask(program)) for name in family]
+    found: dict[str, list[str]] = {name: [] for name in sorted(names)}
+    for name, parameters in found.items():
+        for keyword in read_keywords(ask(program, name)):
+            for title, rows in keyword.blocks:
+                if title == "Parameters" or title.startswith("With "):
+                    parameters += [row[0] for row in rows if row[0] not in parameters]
+    lines = [f"{json.dumps(name)}: {json.dumps(sorted(own))}" for name, own in found.items()]
+    return "{\n " + ",\n ".join(lines) + "\n}\n"
+
+
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "keyway")
     parser.add_argument("-o", "--output", type=Path, default=PAGE)
+    parser.add_argument("--parameters", type=Path, default=PARAMETERS)
     options = parser.parse_args(arguments)
     options.output.write_text(render(options.program), encoding="utf-8")
+    options.parameters.write_text(render_parameters(options.program), encoding="utf-8")
     return 0
 
 

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 # The first line is `ok VALUE`, `fail CODE`, `sleep SECONDS`, `deaf SECONDS` or `crash`.
-PROGRAM = """import json, os, signal, sys, time
+PROGRAM = """import hashlib, json, os, signal, sys, time
 from pathlib import Path
 if sys.argv[1] == "--version":
     print("fake 1"); sys.exit()
@@ -26,8 +26,11 @@ if verb == "deaf":
 if verb == "crash":
     os.kill(os.getpid(), signal.SIGSEGV)
 if verb == "fail":
-    print("deck:1: wrong"); sys.exit(int(value))
+    print("deck:1: wrong\\nkeyway: the end"); sys.exit(int(value))
+if (folder.parent / "is_full").exists():
+    print("keyway: the disk is full"); sys.exit(3)
 summary = {"program": {}, "status": "finished", "message": "",
+    "deck": {"sha256": hashlib.sha256(deck.read_bytes()).hexdigest()},
     "envelopes": {"S1": {"anywhere": {"value": float(value or 0)}}}}
 (folder / (deck.stem + ".json")).write_text(json.dumps(summary))
 """

@@ -160,6 +160,7 @@ def test_values_with_names_of_results_have_their_own_columns(place):
     (place / "dam.inp").write_text("*STEP, NAME={status}{U}\n")
     found = cases(place, "status,U\na,1\nb,2\n")
     records = [Record(str(c.deck), str(c.folder), "not run") for c in found]
+    records[0].has_results = True
     found[0].folder.mkdir(exist_ok=True)
     summary = {
         "program": {},

@@ -159,3 +159,32 @@ def test_a_step_can_follow_the_last_one(deck):
     deck.add("*STEP\n*FREQUENCY\n5\n*END STEP", after=last)
     assert len(deck.steps) == 2
     assert deck.text().endswith("*End Step\n*STEP\n*FREQUENCY\n5\n*END STEP\n** the end\n")
+
+
+def test_case_counts_in_letters_beyond_ascii(tmp_path):
+    """As in the program: öä and Öä are two names."""
+    text = "*NODE, NSET=öä\n1, 0, 0, 0\n*NODE, NSET=Öä\n2, 0, 0, 0\n*NSET, NSET=ÖÄ\nÖä\n"
+    deck = Deck.from_text(text, tmp_path / "deck.inp")
+    sets = {name: deck.node_set(name).tolist() for name in ("öä", "Öä", "ÖÄ")}
+    assert sets == {"öä": [1], "Öä": [2], "ÖÄ": [2]}
+    assert [len(deck.find("NODE", NSET=name)) for name in ("öä", "öÄ")] == [1, 0]
+
+
+@pytest.mark.parametrize(
+    ("text", "num_lines"),
+    [
+        ("*NSET, NSET=B,\nUNSORTED\n1, 2\n", 1),
+        ("*NSET, NSET=B,\n Generate\n1, 9, 2\n", 1),
+        ("*CONTACTPAIR, INTERACTION=I,\nsmall  sliding,\nTYPE=SURFACE TO SURFACE\nA, B\n", 1),
+        ("*STEP,\nPERTURBATION\n", 0),
+        ("*SURFACE, NAME=S,\nINTERNAL\nE, S1\n", 1),
+        ("*BOUNDARY,\nBASE, 1, 3\n", 1),  # the comma has no meaning
+        ("*HEADING,\nlevel = 9 m\n", 1),  # a keyword without parameters
+        ("*NO KEYWORD,\nUNSORTED\n", 1),
+        ("*NO KEYWORD,\nA=1\n", 0),
+    ],
+)
+def test_lines_in_which_a_keyword_goes_on(text, num_lines):
+    """As the program reads them: with the parameters that each keyword has."""
+    (card,) = Deck.from_text(text).cards
+    assert len(card.data) == num_lines

@@ -12,6 +12,13 @@ def test_page_is_that_of_the_program(program_path: Path) -> None:
     )
 
 
+def test_parameters_for_python_are_those_of_the_program(program_path: Path) -> None:
+    expected = make_keywords.render_parameters(program_path.resolve())
+    assert make_keywords.PARAMETERS.read_text(encoding="utf-8") == expected, (
+        "tools/keyway/deck/parameters.json is out of date: run python tools/make_keywords.py"
+    )
+
+
 HELP = """\
 *JOINT LAW  (in the model)
   The law of a contraction joint, which is wrapped where the line of the page has no more room

@@ -72,8 +72,16 @@ def mesh_with_fields(results: Results, saved: SavedFields) -> pv.UnstructuredGri
         grid.point_data[name] = group[name][:]
     for name, data in group.get("elements", {}).items():
         grid.cell_data[name] = data[:][results.solids]
+    _add_stage(grid, results, saved.step)
     grid.field_data["TIME"] = [saved.time]
     return grid
+
+
+def _add_stage(grid: pv.UnstructuredGrid, results: Results, step: int) -> None:
+    """The step in which each solid was added, 0 where it is absent; in decks with stages."""
+    stage = results.stage(step)
+    if stage is not None:
+        grid.cell_data["STAGE"] = stage[results.solids]
 
 
 def mesh_with_envelopes(results: Results, step: int | None) -> pv.UnstructuredGrid:
@@ -84,7 +92,9 @@ def mesh_with_envelopes(results: Results, step: int | None) -> pv.UnstructuredGr
         where = "" if step is None else f" of step {step}"
         raise LookupError(f"no envelopes{where}; request them with *ENVELOPE")
     grid = bare_mesh(results)
-    for name, data in groups[max(groups) if step is None else step].items():
+    step = max(groups) if step is None else step
+    _add_stage(grid, results, step)
+    for name, data in groups[step].items():
         if len(data) == len(results.x):
             grid.point_data[name] = data[:]
         else:

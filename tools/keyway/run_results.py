@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from keyway_tools.job_files import job_of_file, table_of
 from keyway_tools.results import Results, why_incomplete
 
 from . import frames, meshes
@@ -20,13 +21,17 @@ if TYPE_CHECKING:
 def open_run(path: str | os.PathLike[str], job: str | None = None) -> RunResults:
     """Open the results of a run.
 
-    `path` is the folder of the results, one of its files (dam.json, dam.h5), or folder and name of
-    the job (results/dam for results/dam.json). `job` names the job where a folder holds several.
-    Raises FileNotFoundError where there are no results, ValueError where a folder holds several.
+    `path` is the folder of the results, one of its files (dam.json, dam.h5, a table, a picture), or
+    folder and name of the job (results/dam for results/dam.json). `job` names the job where a
+    folder holds several. Raises FileNotFoundError where there are no results, ValueError where a
+    folder holds several.
     """
     place = Path(path)
     if place.is_dir():
         return RunResults(Results(place, job))
+    found = job_of_file(place) if place.is_file() and place.suffix != ".json" else None
+    if found is not None:
+        return RunResults(Results(*found))
     name = place.stem if place.is_file() else place.name
     if (place.parent / f"{name}.json").is_file():
         return RunResults(Results(place.parent, name))
@@ -93,15 +98,15 @@ class RunResults:
 
     def node(self, name: str) -> pd.DataFrame:
         """*NODE PRINT of a node set: step, increment, time, node and the fields."""
-        return self.table(f"node_{_in_file(name)}")
+        return self.table(table_of(self._results, "node", name))
 
     def element(self, name: str) -> pd.DataFrame:
         """*EL PRINT of an element set: step, increment, time, element, point and the fields."""
-        return self.table(f"el_{_in_file(name)}")
+        return self.table(table_of(self._results, "el", name))
 
     def joint(self, name: str) -> pd.DataFrame:
         """*JOINT PRINT of a joint: step, increment, time, point, x, y, z and the fields."""
-        return self.table(f"joint_{_in_file(name)}")
+        return self.table(table_of(self._results, "joint", name))
 
     @property
     def energies(self) -> pd.DataFrame:
@@ -174,8 +179,9 @@ class RunResults:
         """The solids with the fields that are saved nearest to a time, by default the last ones.
 
         Vectors have the shape (nodes, 3), tensors (nodes, 6) in the order 11, 22, 33, 12, 13, 23;
-        the time itself is in field_data["TIME"]. `step` (from 1) chooses a step. Raises LookupError
-        where no fields are saved.
+        the time itself is in field_data["TIME"]. `step` (from 1) chooses a step. Decks with stages
+        have STAGE on cells: the step in which the element was added, 0 where it is absent. Raises
+        LookupError where no fields are saved.
         """
         return meshes.mesh_with_fields(self._results, meshes.nearest(self._saved, time, step))
 
@@ -212,8 +218,3 @@ class RunResults:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def _in_file(name: str) -> str:
-    """The name of a set or joint in the names of files."""
-    return "".join(c if c.isascii() and (c.isalnum() or c in "_-.") else "_" for c in name.upper())

@@ -5,9 +5,11 @@ from __future__ import annotations
 import codecs
 import contextlib
 import os
+import string
 from pathlib import Path
 
 BYTE_ORDER_MARK = "\ufeff"
+_CAPITALS = {ord(letter): letter.upper() for letter in string.ascii_lowercase}
 
 
 def read_deck_text(path: Path) -> str:
@@ -23,6 +25,15 @@ def place_of(folder: Path, name: str) -> Path:
             other = folder / os.fsdecode(name.encode("latin-1"))
             path = other if other.exists() else path
     return path.resolve()
+
+
+def capitals(text: str) -> str:
+    """A name as the program compares it: of the letters a to z alone case does not count.
+
+    >>> capitals("Fuß ö")
+    'FUß ö'
+    """
+    return text.translate(_CAPITALS)
 
 
 def text_of(content: bytes) -> str:

@@ -14,15 +14,16 @@ import threading
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
 
 from keyway_tools.deck_bytes import place_of, read_deck_text
-from keyway_tools.results import Results
+from keyway_tools.job_folder import has_results, state_of, summary_of, wait_until_free
 
 RECORD = ".batch.json"
 EXTREMES = ("S1", "S3", "OPENING", "DAMAGET")
 # Meaning of the exit codes of the program (deck.md, "Running").
-STATUS_OF_CODE = {0: "finished", 1: "stopped", 2: "bad deck", 3: "system failed"}
+BAD_DECK, SYSTEM_FAILED = 2, 3
+STATUS_OF_CODE = {0: "finished", 1: "stopped", BAD_DECK: "bad deck", SYSTEM_FAILED: "system failed"}
+IN_USE = "[folder-in-use]"  # end of the message where another run holds the folder
 PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 _prctl = getattr(ctypes.CDLL(None), "prctl", None)
 GRACE = 60.0  # seconds until a run that was asked to end is killed: increments may be long
@@ -44,11 +45,7 @@ class Record:
     extremes: dict[str, float | None] = field(default_factory=dict)
     message: str = ""
     was_kept: bool = False  # from an earlier call
-
-    @property
-    def has_results(self) -> bool:
-        """Whether the results in the folder are those of this run."""
-        return STATUS_OF_CODE.get(self.exit_code) != "bad deck"
+    has_results: bool = False  # the results in the folder are those of this run
 
     def write(self) -> None:
         text = json.dumps(asdict(self), indent=2)
@@ -90,8 +87,10 @@ def digest_of(deck: Path, program: str) -> str:
 def earlier_record(folder: Path) -> Record | None:
     """The record of an earlier run in the folder, if it can be read."""
     try:
-        return Record(**json.loads((folder / RECORD).read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
+        content = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        content.setdefault("has_results", content["status"] == "finished")  # of older tools
+        return Record(**content)
+    except (OSError, ValueError, TypeError, KeyError):
         return None
 
 
@@ -119,10 +118,10 @@ class DeckRunner:
         self._lock = threading.Lock()
 
     def is_kept(self, deck: Path, folder: Path) -> bool:
-        """Whether a run of this deck has finished in the folder."""
+        """Whether a run of this deck has finished in the folder, and its results are there."""
         wanted = Record("", "", "", digest_of(deck, self.version), self.options)
         earlier = earlier_record(folder)
-        return earlier is not None and is_same(earlier, wanted)
+        return earlier is not None and is_same(earlier, wanted) and has_results(folder, deck)
 
     def record_of(self, deck: Path, folder: Path) -> Record:
         """What a run of this deck has left in the folder; 'not run' where it has left nothing."""
@@ -135,7 +134,7 @@ class DeckRunner:
         record = Record(str(deck), str(folder), "not run", options=self.options)
         record.digest = digest_of(deck, self.version)
         earlier = earlier_record(folder)
-        if earlier and not again and is_same(earlier, record):
+        if earlier and not again and is_same(earlier, record) and has_results(folder, deck):
             earlier.was_kept = True
             earlier.deck, earlier.folder = record.deck, record.folder
             return earlier
@@ -143,8 +142,12 @@ class DeckRunner:
             return record
         folder.mkdir(parents=True, exist_ok=True)
         (folder / RECORD).unlink(missing_ok=True)
+        wait_until_free(folder, deck.stem, lambda: self.is_ending)
+        if self.is_ending:
+            return record
+        before = state_of(folder / f"{deck.stem}.json")
         self._execute(deck, record)
-        read_summary(deck, record)
+        read_results(deck, record, before)
         record.write()
         return record
 
@@ -233,20 +236,24 @@ def version_of(program: Path) -> str:
     return done.stdout.strip()
 
 
-def read_summary(deck: Path, record: Record) -> None:
-    """Takes extremes and message from the summary, if the run has written one. A bad deck writes
-    none: that in the folder is of an earlier deck."""
-    try:
-        if not record.has_results:
-            raise ValueError("no results")
-        results = Results(record.folder, deck.stem)
-        summary: dict[str, Any] = results.summary
-    except (OSError, ValueError):
+def read_results(deck: Path, record: Record, before: tuple[int, int] | None) -> None:
+    """Takes extremes and message from the summary, if the run has written one.
+
+    `before` is the state of job.json when the run began. A run that fails before its first
+    increment writes none, and marks that of an earlier deck: the one in the folder is not its own.
+    """
+    folder = Path(record.folder)
+    told = (folder / "batch.out").read_text(errors="replace").strip().splitlines() or [""]
+    summary = None
+    is_written = state_of(folder / f"{deck.stem}.json") not in (None, before)
+    if is_written and record.exit_code != BAD_DECK and not told[-1].endswith(IN_USE):
+        summary = summary_of(folder, deck)
+    if summary is None:
         if record.status == "finished":
             record.status = "no results"
-        last = (Path(record.folder) / "batch.out").read_text(errors="replace").strip().splitlines()
-        record.message = last[0] if last else ""
+        record.message = told[-1] if record.exit_code == SYSTEM_FAILED else told[0]
         return
+    record.has_results = True
     # The system's figure includes the moment before the child process starts the program.
     memory = (summary.get("ledger") or {}).get("peak_memory_mb")
     record.peak_memory_mb = memory or record.peak_memory_mb
@@ -257,3 +264,5 @@ def read_summary(deck: Path, record: Record) -> None:
     damage = (summary.get("damage") or {}).get("DAMAGET") or {}
     record.extremes["DAMAGET"] = damage.get("value")  # written also without *ENVELOPE
     record.message = summary.get("message") or ""
+    if record.exit_code == SYSTEM_FAILED:
+        record.message = record.message or told[-1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fcntl
-import glob
 import json
 import socket
 from collections.abc import Iterable
@@ -15,6 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .job_files import job_of_file, name_of_table, tables_of
 from .joint_faces import JointFaces, read_joint_faces
 from .program import DamagedFileError
 from .result_files import Table, as_array, as_file_word, load_json, natural, read_table
@@ -57,7 +57,8 @@ def folder_and_job(given: Path) -> tuple[Path, str | None]:
         has_ending = given.name.endswith(ending)
         if has_ending and any((given.parent / f"{job}{kind}").is_file() for kind in KINDS):
             return given.parent, job
-    return given, None
+    found = job_of_file(given) if given.is_file() else None
+    return found or (given, None)
 
 
 def is_summary(path: Path) -> bool:
@@ -139,9 +140,7 @@ class Results:
 
     def tables(self) -> list[str]:
         """Names of the tables, as in ['node_TIP', 'joint_J1']; numbers in them count up."""
-        start = f"{self.job}_"
-        found = (p.stem for p in self.folder.glob(f"{glob.escape(start)}*.csv"))
-        return sorted((name.removeprefix(start) for name in found), key=natural)
+        return sorted(tables_of(self.folder, self.job), key=natural)
 
     def table(self, name: str) -> Table:
         """Columns of the table JOB_NAME.csv."""
@@ -154,7 +153,8 @@ class Results:
 
     def set_of_table(self, word: str) -> str:
         """The set of the table node_WORD, as job.h5 names it."""
-        return _written_as(word, self.file.get("sets/nodes", {}))
+        names = self.file.get("sets/nodes", {})
+        return name_of_table(self, "node", word, names) or _written_as(word, names)
 
     def step_name(self, step: int) -> str:
         """The name of a step."""

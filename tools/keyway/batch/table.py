@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from keyway_tools.deck_runs import EXTREMES, Record
-
-from keyway.run_results import open_run
+from keyway_tools.job_folder import summary_of
 
 from .cases import NAME, Case
 
@@ -101,9 +100,8 @@ def _run(record: Record) -> dict[str, Any]:
 
 
 def _extremes(case: Case) -> dict[str, float | None]:
-    try:
-        summary = open_run(case.folder / f"{case.deck.stem}.json").summary
-    except (OSError, ValueError):
+    summary = summary_of(case.folder, case.deck)
+    if summary is None:
         return {}
     found = {"displacement": _anywhere(summary.get("displacement"))}
     found |= {name: _anywhere(one) for name, one in (summary.get("envelopes") or {}).items()}

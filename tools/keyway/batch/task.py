@@ -6,34 +6,16 @@ worker that is lost leaves no run behind. The run leaves its record in the folde
 
 from __future__ import annotations
 
-import fcntl
 import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
 from keyway_tools.deck_runs import end_with_parent
 
 from .plan import Plan
-
-_PATIENCE = 60.0  # [s] for the run of a lost worker to end
-
-
-def wait_for_folder(folder: Path, job: str) -> None:
-    """Wait until no run of the job is alive in the folder: it holds the lock of job.lock."""
-    until = time.monotonic() + _PATIENCE
-    while time.monotonic() < until:
-        try:
-            with (folder / f"{job}.lock").open(encoding="utf-8") as file:
-                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-            return
-        except FileNotFoundError:
-            return
-        except OSError:
-            time.sleep(0.2)
 
 
 def main(arguments: list[str]) -> int:
@@ -51,7 +33,6 @@ def main(arguments: list[str]) -> int:
     runner = plan.runner()
     deck, folder = (Path(word) for word in plan.tasks[number])
     try:
-        wait_for_folder(folder, deck.stem)
         record = runner.run(deck, folder, plan.again)
     except KeyboardInterrupt:
         runner.stop()

@@ -8,13 +8,8 @@ from pathlib import Path
 
 from .data import Data, is_data
 from .fields import BLANKS, split, squeezed, words
+from .known import parameters_of
 from .parameters import Parameters
-
-# Parameters without a value, with which a continued keyword line may begin.
-FLAGS = {
-    "ADD", "DIRECT", "FIELD", "GENERATE", "HISTORY", "JOINT", "MODAL", "PRESSURE", "REDUCED",
-    "REMOVE", "WRITE",
-}  # fmt: skip
 
 
 @dataclass(eq=False, repr=False)
@@ -128,16 +123,28 @@ def _is_keyword(line: str) -> bool:
 
 def _end_of_head(lines: list[str], place: int) -> int:
     """The line after the keyword line and those in which it continues."""
+    parameters = parameters_of(_first_word(lines[place]).lstrip("*"))
     place += 1
     while lines[place - 1].rstrip(BLANKS).endswith(","):
         following = _skip_comments(lines, place)
         if following == len(lines) or _is_keyword(lines[following]):
             break
-        start, end = split(lines[following])[0]
-        if "=" not in lines[following] and words(lines[following][start:end]) not in FLAGS:
+        if not _goes_on(lines[following], parameters):
             break
         place = following + 1
     return place
+
+
+def _goes_on(line: str, parameters: frozenset[str] | None) -> bool:
+    """Whether a line below a comma has parameters of the keyword; else the comma has no meaning."""
+    if parameters is None:  # a keyword that the program does not know
+        return "=" in line
+    return bool(parameters) and ("=" in line or _first_word(line) in parameters)
+
+
+def _first_word(line: str) -> str:
+    start, end = split(line)[0]
+    return words(line[start:end])
 
 
 def _body(lines: list[str], place: int) -> tuple[list[str], int]:

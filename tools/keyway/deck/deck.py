@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+from keyway_tools.deck_bytes import capitals
 
 from .card import Card
 from .deck_file import DeckError, DeckFile, included_file, read_files, walk
@@ -157,10 +158,10 @@ class Deck:
 
     def _set(self, kind: str, name: str) -> np.ndarray:
         sets = collect(self.cards, kind)
-        if name.upper() not in sets:
+        if capitals(name) not in sets:
             known = ", ".join(sets) or "none"
             raise DeckError(f"{self.path}: no {kind} '{name}'; the deck has: {known}")
-        return np.array(sorted(sets[name.upper()]), dtype=int)
+        return np.array(sorted(sets[capitals(name)]), dtype=int)
 
     def add_node_set(self, name: str, members: Iterable[Value]) -> Card:
         """Add *NSET of numbers or names of sets below the mesh; return the card."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from numbers import Integral, Real
 
+from keyway_tools.deck_bytes import capitals
+
 BLANKS = " \t\r\n"
 QUOTES = "'\""
 Value = str | int | float
@@ -76,9 +78,9 @@ def as_number(text: str) -> float:
 
 def words(text: str) -> str:
     """A keyword or a name of a parameter: capitals, single blanks."""
-    return " ".join(text.upper().split())
+    return " ".join(capitals(text).split())
 
 
 def squeezed(text: str) -> str:
     """A keyword for comparison: *ELFILE is *EL FILE."""
-    return "".join(text.upper().split())
+    return "".join(capitals(text).split())

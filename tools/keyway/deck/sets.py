@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from keyway_tools.deck_bytes import capitals
+
 from .card import Card
 from .deck_file import DeckError
 from .fields import Value, as_text, quoted_if_needed
@@ -29,9 +31,9 @@ def collect(cards: Iterable[Card], kind: str) -> dict[str, set[int]]:
         if source is None or not name:
             continue
         if source.is_a(_MEMBERS[kind]):
-            sets.setdefault(name.upper(), set()).update(_first_numbers(source, card))
+            sets.setdefault(capitals(name), set()).update(_first_numbers(source, card))
         elif source.is_a(kind):
-            sets.setdefault(name.upper(), set()).update(_members(source, card, sets))
+            sets.setdefault(capitals(name), set()).update(_members(source, card, sets))
     return sets
 
 
@@ -56,8 +58,8 @@ def _members(source: Card, card: Card, sets: dict[str, set[int]]) -> Iterator[in
             yield from range(first, last + 1, max(step, 1))
             continue
         for text in row:
-            if text.upper() in sets:
-                yield from sets[text.upper()]
+            if capitals(text) in sets:
+                yield from sets[capitals(text)]
             elif text:
                 yield _number(text, card)
 
