@@ -6,6 +6,10 @@
 !> matrix P^-1 M P^-1 gives vectors that satisfy N^T K a = 0 and ignores the part of r on N, which
 !> a static displacement of the massless part takes. Conjugate gradients for M a = r with this
 !> preconditioner therefore find the acceleration of the constrained form without N.
+!>
+!> P^-1 makes a large motion of the part of r on N, whose round-off M does not cancel. This part is
+!> taken away first, as a force K N c, which changes nothing: the powers of P^-1 eps K, applied to
+!> P^-1 r, tend to N c.
 module massless_acceleration
   use kinds, only: rk
   use errors, only: error_type
@@ -27,6 +31,8 @@ module massless_acceleration
   !> Of the correction, in the norm of M: the end of the iteration, and the largest one accepted
   !> where round-off ends the iteration. Both over the acceleration that the loads alone give.
   real(rk), parameter :: tolerance = 1.0e-12_rk, largest_correction = 1.0e-6_rk
+  !> Powers of P^-1 eps K: each takes a factor of some 1e-5 of what has mass.
+  integer, parameter :: num_powers = 3
 
 contains
 
@@ -42,6 +48,7 @@ contains
     integer, intent(out) :: worst !< 0: none
     type(error_type), allocatable, intent(out) :: error
     class(equation_solver), allocatable :: solver
+    real(rk) :: own(size(r)), reference(size(r)) ! r and load without their parts on N
     a = 0.0_rk
     worst = 0
     call make_solver(symmetric_solver, solver, error, matrix%is_shared)
@@ -49,8 +56,42 @@ contains
     if (allocated(error)) return
     call solver%factorise(matrix, sum_of_both, error)
     worst = solver%failed_unknown
-    if (.not. allocated(error)) call iterate(matrix, mass, solver, load, r, a, worst, error)
+    if (allocated(error)) return
+    own = r
+    reference = load
+    call take_static_part(matrix, mass, sum_of_both, solver, own, error)
+    if (allocated(error)) return
+    call take_static_part(matrix, mass, sum_of_both, solver, reference, error)
+    if (allocated(error)) return
+    call iterate(matrix, mass, solver, reference, own, a, worst, error)
   end subroutine find_constrained_acceleration
+
+  !> Takes from a force what a static displacement of the massless part takes: eps K N c.
+  subroutine take_static_part(matrix, mass, sum_of_both, solver, force, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M
+    real(rk), intent(in) :: sum_of_both(:) !< values of P
+    class(equation_solver), intent(inout) :: solver !< of P
+    real(rk), intent(inout) :: force(:) !< (num_total) [N]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), dimension(size(force)) :: moved, product
+    real(rk) :: x(matrix%num_free, 1)
+    integer :: i
+    moved = 0.0_rk
+    x(:, 1) = force(:matrix%num_free)
+    call solver%solve(x, error)
+    if (allocated(error)) return
+    moved(:matrix%num_free) = x(:, 1)
+    do i = 1, num_powers
+      call multiply(matrix, mass, moved, product)
+      x(:, 1) = product(:matrix%num_free)
+      call solver%solve(x, error)
+      if (allocated(error)) return
+      moved(:matrix%num_free) = moved(:matrix%num_free) - x(:, 1)
+    end do
+    call multiply(matrix, sum_of_both - mass, moved, product)
+    force = force - product
+  end subroutine take_static_part
 
   !> eps: a share of mass over stiffness, summed over the unknowns with mass; 0 without any mass.
   subroutine find_weight(matrix, mass, stiffness, eps)
