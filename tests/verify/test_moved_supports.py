@@ -178,6 +178,44 @@ def test_a_history_over_several_steps(keyway):
             assert other == pytest.approx(one, abs=1e-9 * max(np.abs(one).max(), 1e-9)), column
 
 
+def drawn_bar(clock: str, end: float, first: float = 0.0) -> str:
+    """A bar that its base accelerates by 1 m/s2 for 0.2 s; then nothing holds the base along the
+    motion. A table from `first` to `end` [s]."""
+    mesh, number = box_mesh((1, 1, 2), stretched((1.0, 1.0, 2.0)))
+    mesh.node_sets |= {"BASE": number[:, :, 0].ravel(), "ALL": number.ravel()}
+    times = np.arange(0.0, end + 0.005, 0.01)
+    history = "".join(f"{first + t:.2f}, {0.5 * t**2:.12g}\n" for t in times)
+    cards = elastic(2e10, 0.2, 2400.0) + f"*AMPLITUDE, NAME=A, TIME={clock}\n{history}"
+    cards += "*BOUNDARY\nBASE, 1, 3\n" + ("*STEP\n*STATIC\n*END STEP\n" if first else "")
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.2\n*BOUNDARY, AMPLITUDE=A\nBASE, 1, 1, 1.\n"
+    cards += "*NODE PRINT, NSET=ALL\nU, V, A, RF\n*NODE PRINT, NSET=BASE\nA\n*END STEP\n"
+    cards += "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.05\n*BOUNDARY, OP=NEW\nBASE, 2, 3\n*END STEP\n"
+    return brick_deck(mesh, "C3D8", cards)
+
+
+@pytest.mark.parametrize("first", [0.0, 1.0], ids=["analysis", "later step"])
+def test_a_table_in_total_time_that_ends_with_its_step(keyway, first):
+    """The same motion as by a table in the time of the step, also after the release. The support
+    stopped in the last increment, with 20 times its acceleration, and took 6 % of the momentum."""
+    clocks = {"STEP TIME": 0.0, "TOTAL TIME": first}
+    tables = [
+        keyway(drawn_bar(clock, 0.2, start), name=clock[:4]).csv("node_ALL")
+        for clock, start in clocks.items()
+    ]
+    ends = [(t["step"] >= t["step"][-1] - 1) & (t["increment"] > 0) for t in tables]
+    for column in ("U1", "V1", "A1", "A3", "RF1"):
+        expected, found = (table[column][end] for table, end in zip(tables, ends, strict=True))
+        assert found == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("end", [0.2, 0.3], ids=["ends", "goes on"])
+def test_a_support_has_the_acceleration_of_its_table(keyway, end):
+    """1 m/s2 in all increments, whether the table ends with the step or goes on."""
+    table = keyway(drawn_bar("TOTAL TIME", end)).csv("node_BASE")
+    moves = (table["step"] == 1) & (table["increment"] > 0)
+    assert table["A1"][moves] == pytest.approx(1.0, rel=1e-6)  # digits of the table
+
+
 @pytest.mark.parametrize(
     "change",
     [

@@ -63,27 +63,23 @@ contains
     end do
   end subroutine find_slopes
 
-  !> Rates of one support. Where its history begins or ends, with the analysis or, in the time of a
-  !> step, with the step, they are those of the parabola through the nearest three points; the
-  !> velocity is not above the slope of the chord there, so that a motion that starts smoothly
-  !> starts from rest.
+  !> Rates of one support. Where its history begins or ends, they are those of the parabola through
+  !> the nearest three points; the velocity is not above the slope of the chord there, so that a
+  !> motion that starts smoothly starts from rest.
   pure subroutine differentiate(item, histories, when, increment, v, a)
     type(support), intent(in) :: item
     type(amplitude), intent(in) :: histories(:)
     type(step_time), intent(in) :: when
     real(rk), intent(in) :: increment !< [s]
     real(rk), intent(out) :: v, a
-    real(rk) :: u(-1:1), h, shift
+    real(rk) :: u(-1:1), h, shift, span(2)
     type(step_time) :: instant
     integer :: i
     h = increment
     instant = when
-    if (histories(item%amplitude)%uses_total_time) then
-      instant%now = max(when%now, h - when%start)
-    else
-      h = min(h, 0.5_rk*when%duration)
-      instant%now = min(max(when%now, h), when%duration - h)
-    end if
+    span = span_of_history(histories(item%amplitude), when, h)
+    h = min(h, 0.5_rk*(span(2) - span(1)))
+    instant%now = min(max(when%now, span(1) + h), span(2) - h)
     shift = when%now - instant%now
     do i = -1, 1
       instant%now = when%now - shift + i*h
@@ -94,6 +90,27 @@ contains
     if (shift < -roundoff*h) v = nearer_zero(v, (u(0) - u(-1))/h)
     if (shift > roundoff*h) v = nearer_zero(v, (u(1) - u(0))/h)
   end subroutine differentiate
+
+  !> Beginning and end of a history since the start of the step [s]: in the time of a step those of
+  !> the step. In total time it begins with the analysis, or with the step where its table does, and
+  !> ends where a table ends that lasts at least as long as the step. At the ends of other tables
+  !> the support starts or stops within the step.
+  pure function span_of_history(history, when, increment) result(span)
+    type(amplitude), intent(in) :: history
+    type(step_time), intent(in) :: when
+    real(rk), intent(in) :: increment !< [s]
+    real(rk) :: span(2)
+    integer :: n
+    span = [0.0_rk, when%duration]
+    if (.not. history%uses_total_time) return
+    n = size(history%time)
+    associate (first => history%time(1) - when%start, last => history%time(n) - when%start)
+      span = [-when%start, huge(1.0_rk)]
+      if (n == 1) return
+      if (first <= roundoff*increment) span(1) = max(span(1), first)
+      if (last >= when%duration - roundoff*increment) span(2) = max(last, when%duration)
+    end associate
+  end function span_of_history
 
   !> Of two slopes the one nearer to zero; zero where their signs differ.
   pure real(rk) function nearer_zero(x, y) result(slope)
