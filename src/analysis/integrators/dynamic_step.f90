@@ -8,7 +8,7 @@ module dynamic_step
   use analysis_state, only: motion, state
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
-  use modal_damping, only: build_modal_damping
+  use modal_damping, only: build_modal_damping, remark_on_modes
   use joint_water, only: resume_uplift, update_uplift
   use step_equilibrium, only: make_equilibrium
   use guest_forces, only: has_histories
@@ -51,6 +51,7 @@ contains
       if (.not. allocated(error)) call build_modal_damping(model, plan, system, costs, error)
       if (.not. allocated(error)) call build_origins(model, now, system, costs, error)
       if (allocated(error)) return
+      call note_modes(plan, system, results)
       call build_loads(model, plan, now%u, system, costs)
     end associate
     now%num_unknowns = system%matrix%num_free
@@ -58,6 +59,16 @@ contains
     call keep_joints(last, plan, system%operator%num_points, now)
     call solids%open(model, system, plan, now)
   end subroutine build_dynamic_step
+
+  !> Says in the log where more modes are damped than the deck names.
+  subroutine note_modes(plan, system, results)
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    class(listener), intent(inout) :: results
+    character(:), allocatable :: remark
+    remark = remark_on_modes(plan, system)
+    if (remark /= '') call results%log%note(remark)
+  end subroutine note_modes
 
   !> Builds the equations of a step, finds the acceleration that it starts with, opens the energy
   !> balance, reports the start to the listener and prepares the solver. The integrator computes

@@ -18,9 +18,11 @@ module modal_damping
   use write_text, only: as_text
   implicit none
   private
-  public :: build_modal_damping
+  public :: build_modal_damping, remark_on_modes
 
   real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
+  !> Squares of frequencies that differ by less, over them, are those of modes that are not unique.
+  real(rk), parameter :: same_frequency = 1.0e-6_rk
   integer, parameter :: first_guess = 10 !< modes to begin with where a highest frequency is given
 
 contains
@@ -62,7 +64,8 @@ contains
     end do
   end subroutine set_columns
 
-  !> As many modes as requested, or all up to the highest frequency.
+  !> As many modes as requested, with all modes of the frequency of the last one, or all modes up to
+  !> the highest frequency.
   subroutine choose_modes(damping, system, closed, balance, lambda, phi, error)
     type(step_damping), intent(in) :: damping
     type(dam_system), intent(in) :: system
@@ -70,15 +73,18 @@ contains
     type(linear_equilibrium), intent(inout) :: balance !< holds its factor
     real(rk), allocatable, intent(out) :: lambda(:), phi(:, :)
     type(error_type), allocatable, intent(out) :: error
+    real(rk) :: highest
     integer :: num_modes, most, num_below
-    num_modes = damping%num_modes
     most = num_massive(system%matrix, system%mass)
-    if (num_modes == 0) num_modes = min(first_guess, most)
+    num_modes = min(first_guess, most)
+    if (damping%num_modes > 0) num_modes = max(min(damping%num_modes + 1, most), damping%num_modes)
     do
       call solve_modes(system%matrix, closed, system%mass, balance%factor, num_modes, lambda, phi, &
                        error)
-      if (allocated(error) .or. damping%num_modes > 0) return
-      num_below = count(sqrt(lambda) <= two_pi*damping%highest)
+      if (allocated(error)) return
+      highest = (two_pi*damping%highest)**2
+      if (damping%num_modes > 0) highest = (1.0_rk + same_frequency)*lambda(damping%num_modes)
+      num_below = count(lambda <= highest)
       if (num_below < num_modes .or. num_modes == most) exit
       num_modes = min(2*num_modes, most)
     end do
@@ -90,4 +96,15 @@ contains
     lambda = lambda(:num_below)
     phi = phi(:, :num_below)
   end subroutine choose_modes
+
+  !> What the log says where more modes are damped than the deck names; '' else.
+  function remark_on_modes(plan, system) result(remark)
+    type(step), intent(in) :: plan
+    type(dam_system), intent(in) :: system
+    character(:), allocatable :: remark
+    remark = ''
+    if (plan%damping%num_modes == 0 .or. size(system%modal, 2) <= plan%damping%num_modes) return
+    remark = '*DAMPING, MODAL: '//as_text(size(system%modal, 2))//' modes are damped in place '// &
+             'of '//as_text(plan%damping%num_modes)//': the last ones have one frequency'
+  end function remark_on_modes
 end module modal_damping

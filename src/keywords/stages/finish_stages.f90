@@ -1,10 +1,12 @@
 !> Completes the stages of a deck, and checks them.
 module finish_stages
-  use deck_scan, only: is_keyword
+  use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
+  use element_catalogue, only: is_solid
   use model_draft, only: draft
   use stage_faces, only: complete_parts
   use step_plan, only: step_before
+  use write_text, only: as_text
   implicit none
   private
   public :: complete_stages
@@ -31,7 +33,26 @@ contains
     if (.not. allocated(model%problem%stages%is_absent)) return
     model%problem%stages%material = model%problem%mesh%material_of_element
     if (.not. faults%has_errors()) call complete_parts(model, faults)
+    if (.not. faults%has_errors()) call warn_of_nothing_left(model, faults)
   end subroutine complete_stages
+
+  !> The first step of a deck without errors whose solids are all absent.
+  subroutine warn_of_nothing_left(model, faults)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer :: step(size(model%cards)), i, s
+    logical :: is_of_solid(model%problem%mesh%num_elements)
+    is_of_solid = is_solid(model%problem%mesh%element_type)
+    step = steps_of_cards(model%cards)
+    do s = 1, size(model%problem%steps)
+      if (any(is_of_solid .and. .not. model%problem%stages%is_absent(:, s))) cycle
+      do i = 1, size(step)
+        if (step(i) /= s .or. .not. is_keyword(model%cards(i), 'MODEL CHANGE')) cycle
+        call model%cards(i)%warn(faults, 'no solid is left in step '//as_text(s))
+        return
+      end do
+    end do
+  end subroutine warn_of_nothing_left
 
   !> Stages change in static steps; models with *INTERFACE or with springs of ties have none.
   subroutine check_places(model, faults)
