@@ -54,3 +54,28 @@ def test_records_on_a_cluster_that_loses_a_worker(cluster, program_path, tmp_pat
         medians = [float(x) for x in re.findall(r"^\| +\d+ mm \| ([\d.]+)", page, re.M)]
         found = pd.read_csv(tmp_path / "fragility.csv")["median_g"]
         assert list(found) == pytest.approx(medians, abs=0.001)  # the page gives three digits
+
+
+def test_a_limit_without_a_curve_is_explained(tmp_path):
+    """Four records of each peak: 5 mm are between two peaks, 1 mm below and 1 m above them all."""
+    script = (EXAMPLE / "fragility.py").read_text(encoding="utf-8")
+    limits = 'LIMITS = {0.001: "C2", 0.005: "C0", 0.01: "C1", 1.0: "C3"}'
+    script = re.sub(r"^LIMITS = .*?}", limits, script, flags=re.M)
+    (tmp_path / "fragility.py").write_text(script, encoding="utf-8")
+    openings = {0.1: [2, 3, 3, 4], 0.15: [6, 7, 7, 8], 0.2: [9, 9, 11, 12], 0.3: [9, 15, 16, 18]}
+    rows = [(peak, 1e-3 * one) for peak, values in openings.items() for one in values]
+    table = pd.DataFrame(rows, columns=["PGA", "OPENING"]).assign(case="r", status="finished")
+    table.to_csv(tmp_path / "batch.csv", index=False)
+    done = subprocess.run(
+        [sys.executable, "fragility.py", "batch.csv"],
+        cwd=tmp_path, capture_output=True, text=True, check=True, timeout=100,
+    )  # fmt: skip
+    text = done.stdout
+    assert "opening > 1 mm: no curve, all records exceed it: take smaller peaks" in text
+    assert (
+        "opening > 5 mm: no curve, no record up to 0.1 g exceeds it, all from 0.15 g on do: take "
+        "closer peaks" in text
+    )
+    assert "opening > 10 mm: no curve" not in text
+    assert "opening > 1000 mm: no curve, no record exceeds it: take larger peaks" in text
+    assert "NaN" not in text

@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from keyway.commands import compare
+from keyway_tools import comparison
 
 HEADER = "step,increment,time,node,U1,U2,state\n"
 ROWS = ["1,1,0.5,7,1.0e-3,2.0e-9,open\n", "1,1,0.5,9,-4.0,0,stick\n", "1,2,1.0,7,3,nan,slip\n"]
@@ -53,6 +54,21 @@ def test_another_name_and_another_order_of_rows_are_equal(capsys, tmp_path):
     a = make_results(tmp_path / "a", summary=named("dam"))
     b = make_results(tmp_path / "b", job="copy", rows=ROWS[::-1], summary=named("copy"))
     assert run(capsys, a, b)[0] == 0
+
+
+def test_the_time_grows_no_faster_than_the_rows(monkeypatch, tmp_path, a):
+    """A set of all keys for each row took minutes for two tables of 1e4 rows."""
+    built = []
+
+    def counted(*members):
+        built.append(members)
+        return set(*members)
+
+    monkeypatch.setattr(comparison, "set", counted, raising=False)
+    rows = [f"1,1,0.5,{node},0,0,open\n" for node in range(1, 101)]
+    folder = make_results(tmp_path / "many", rows=rows)
+    assert compare.main([str(folder), str(folder)]) == 0
+    assert len(built) < 10
 
 
 def test_place_of_the_largest_difference_is_reported(capsys, tmp_path, a):

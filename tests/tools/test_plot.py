@@ -16,10 +16,11 @@ from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched
 from keyway_tools.colour_scale import Scales, parse_ranges
 from keyway_tools.dam_views import Faces
-from keyway_tools.picture_style import Sheet
+from keyway_tools.picture_style import Sheet, new_figure
 from keyway_tools.pictures_damage import worst_element
 from keyway_tools.pictures_faces import plot_envelope
 from keyway_tools.pictures_joints import JointView, last_slips, plot_joint_slips, ranges_of
+from keyway_tools.pictures_material import Curve, _damage_panel
 from keyway_tools.pictures_shapes import masses_in_words
 from keyway_tools.results import Results, find_jobs
 from keyway_tools.shared_scales import shared_scales
@@ -276,6 +277,16 @@ def test_material_curves_beside_measured_points(tmp_path, capsys, monkeypatch):
     assert image.std() > 0.02
     assert plot.main(["material", curves[0]]) == 0
     assert (tmp_path / "dam_material_A.png").exists()
+
+
+def test_words_of_the_damage_panel_lie_over_no_curve():
+    figure, axis = new_figure(1, 4.0, 3.0)
+    share = np.linspace(0.0, 1.0, 6)
+    table = {"E11": share - 0.5, "DAMAGET": share, "DAMAGEC": 1.0 - share}
+    _damage_panel(axis, [Curve("A", table, "11")])
+    figure.canvas.draw()
+    top = axis.transData.transform((0.0, 1.0))[1]
+    assert axis.get_legend().get_window_extent().y0 > top
 
 
 def test_material_file_that_is_no_curve_is_refused(tmp_path, capsys):

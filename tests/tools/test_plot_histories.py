@@ -97,6 +97,47 @@ def test_nodes_that_move_are_drawn(folder):
     assert "BASE" not in text
 
 
+def test_directions_without_motion_are_not_drawn(folder):
+    """U1 and U3 are zero: their panels would be empty."""
+    write_nodes(folder, "CREST", {40: 0.01})
+    text = words_of(plot_nodes, SiResults(folder), folder)
+    assert "U2 [mm]" in text
+    assert "U1 [mm]" not in text and "U3 [mm]" not in text
+    assert "U1 and U3 not drawn: less than 1e-06 of the largest displacement" in text
+    write_nodes(folder, "CREST", {40: 0.0})
+    text = words_of(plot_nodes, SiResults(folder), folder)
+    assert all(f"U{k} [mm]" in text for k in "123") and "not drawn" not in text
+
+
+def test_round_off_is_no_signal(folder, monkeypatch):
+    """U1 is round-off of 1e-12 m in the static steps, and moves in the earthquake."""
+    with h5py.File(folder / "job.h5", "a") as file:
+        file.move("steps/0001", "steps/0003")
+        file.copy("steps/0003", "steps/0001")
+        file["steps/0001"].attrs["procedure"] = "STATIC"
+    rows = [f"1,{n},{n},40,{(-1) ** n * 1e-12},{n * 1e-3},0" for n in range(1, 6)]
+    rows += [f"3,{n},{5 + 0.01 * n},40,{(-1) ** n * 2e-3},{n * 1e-3},0" for n in range(1, 6)]
+    text = "\n".join(["step,increment,time,node,U1,U2,U3", *rows]) + "\n"
+    (folder / "job_node_CREST.csv").write_text(text)
+    kept = []
+    monkeypatch.setattr(Sheet, "save", lambda _, figure: kept.append(figure) or [])
+    plot_nodes(SiResults(folder), Sheet(folder / "picture"))
+    static, motion = kept[0].axes[:2]
+    assert static.get_ylim() == pytest.approx((-0.25, 0.25))  # [mm] a twentieth of 5 mm
+    assert motion.get_ylim()[1] > 2.0
+
+
+def test_equal_energies_of_one_increment_are_both_seen(folder, monkeypatch):
+    """External and strain energy of a static step: one mark lay over the other."""
+    write_energies(folder, {"external": 1.0, "strain": 1.0}, 1)
+    kept = []
+    monkeypatch.setattr(Sheet, "save", lambda _, figure: kept.append(figure) or [])
+    plot_energy(SiResults(folder), Sheet(folder / "picture"))
+    external, strain = kept[0].axes[0].lines[:2]
+    assert external.get_markersize() > 2.0 * strain.get_markersize()
+    assert external.get_linewidth() > 2.0 * strain.get_linewidth()
+
+
 def curves(name, motions):
     return [NodeCurve(name, n, {}, np.zeros(0, int), motion) for n, motion in motions.items()]
 

@@ -13,6 +13,7 @@ from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.dam_views import Faces
 from keyway_tools.picture_style import Sheet
+from keyway_tools.pictures_joints import plot_joint_states
 from keyway_tools.pictures_stages import changing_steps, plot_stages
 from keyway_tools.si_results import SiResults
 from synthetic_results import write_results
@@ -88,6 +89,64 @@ def test_stages_show_grouted_joints(staged):
     image = matplotlib.image.imread(file)[..., :3]
     orange = (image[..., 0] > 0.7) & (image[..., 2] < 0.2) & (image[..., 1] < 0.5)
     assert orange.sum() > 50
+
+
+def test_joints_are_grouted_in_the_step_of_their_grout(staged):
+    """Grout hardens at the end of its step, and job.h5 shows it in the next one: step 2 of three
+    has a panel, not the water of step 3 after it. Modes between them are no step of that kind."""
+    with h5py.File(staged / "job.h5", "a") as file:
+        del file["steps/0001/stage"]
+        file.move("steps/0002", "steps/0003")
+        del file["steps/0003/stage"]
+        for key, grouted in (("0002", 1), ("0004", 2)):
+            file.copy("steps/0001", f"steps/{key}")
+            for group in file[f"steps/{key}/increments"].values():
+                for joint in group["joints"].values():
+                    joint["grouted"][:] = grouted
+        for group in file["steps/0001/increments"].values():
+            for joint in group["joints"].values():
+                joint["grouted"][:] = 1
+    assert changing_steps(SiResults(staged, "job")) == [1, 2]
+
+
+def test_joints_that_open_before_their_grout_do_not_hide_the_motion(staged):
+    """All points wait for their grout, and are open, in the step before the earthquake."""
+    with h5py.File(staged / "job.h5", "a") as file:
+        file.move("steps/0001", "steps/0003")
+        file.copy("steps/0003", "steps/0001")
+        file["steps/0001"].attrs["procedure"] = "STATIC"
+        for step, grouted in (("0001", 1), ("0003", 2)):
+            for number, group in file[f"steps/{step}/increments"].items():
+                group.attrs["time"] = float(step) + 0.1 * int(number)
+                for joint in group["joints"].values():
+                    joint["grouted"][:] = grouted
+                    if grouted == 1:
+                        joint["state"][:] = 0
+    assert "State of joints at t = 3.1 s, with most area open\n" in words_of_states(staged)
+    with h5py.File(staged / "job.h5", "a") as file:  # open by the weight, after the grout
+        for group in file["steps/0001/increments"].values():
+            for joint in group["joints"].values():
+                joint["grouted"][:] = 2
+    assert "at t = 3.1 s, with most area open in a motion\n" in words_of_states(staged)
+
+
+def test_joints_that_wait_for_their_grout_are_shown_as_such(staged):
+    with h5py.File(staged / "job.h5", "a") as file:
+        file["steps/0001"].attrs["procedure"] = "STATIC"
+        for group in file["steps/0001/increments"].values():
+            for joint in group["joints"].values():
+                joint["grouted"][:] = 1
+    text = words_of_states(staged)
+    assert "no joint is open at a saved time" in text
+    assert "not grouted yet" in text
+
+
+def words_of_states(folder):
+    """Title and legend of the state of joints."""
+    sheet = SimpleNamespace(save=lambda figure: figure)
+    figure = plot_joint_states(SiResults(folder, "job"), sheet)
+    (legend,) = figure.legends
+    return "\n".join([figure.get_suptitle(), *(text.get_text() for text in legend.texts)])
 
 
 def test_joints_without_grout_are_not_called_grouted(staged):

@@ -24,6 +24,13 @@ def test_header_gives_purpose_assumptions_and_results(name):
     assert max(map(len, header.splitlines())) <= 110
 
 
+def test_the_tutorial_shows_cards_of_its_deck():
+    """The page named RECOVERY=ENERGY, which the deck did not have."""
+    page = (make_input.INPUT.parent / "docs/tutorials/cracking_dam.md").read_text()
+    cards = [line.strip() for line in page.splitlines() if line.startswith("    *")]
+    assert cards and set(cards) <= set(SMALL_DECKS["cracking_monolith.inp"]().splitlines())
+
+
 def test_committed_dam_is_what_the_tools_describe():
     """Sizes in the deck's header and files on the disk; the record itself depends on the FFT."""
     folder = make_input.INPUT / "xingbiling_matching"

@@ -178,7 +178,8 @@ def match_rows(report: Report, place: str, a: Table, b: Table, fewer_rows: bool)
     missing = [key for key in keys_b if key not in row_of_key]
     if missing:
         report.lack(place, f"{len(missing)} rows missing in the first, as {title(missing[0])}")
-    extra = [] if fewer_rows else [key for key in keys_a if key not in set(keys_b)]
+    known = set(keys_b)
+    extra = [] if fewer_rows else [key for key in keys_a if key not in known]
     if extra:
         report.lack(place, f"{len(extra)} rows missing in the second, as {title(extra[0])}")
     rows_b = np.array([r for r, key in enumerate(keys_b) if key in row_of_key], dtype=int)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from .picture_style import COLOURS, GREY, Sheet, new_figure
 from .result_files import energy_names, natural
@@ -14,6 +15,9 @@ from .si_results import SiResults
 MOST_CURVES = 6
 LEAST = 1e-6  # of the largest value: less is round-off
 FEW_POINTS = 3  # a curve of fewer points is drawn with marks
+WIDE, NARROW = 3.2, 1.4  # lines of curves that may coincide
+QUIET = 0.05  # of the largest displacement: range of a panel in which nothing moves
+DIRECTIONS = "123"
 
 
 def _curves_by(values: dict[str, np.ndarray], key: str) -> dict[int, np.ndarray]:
@@ -176,32 +180,49 @@ def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:
     if not curves:
         return []
     columns = _columns(results, [one.table for one in curves])
+    sizes = {d: max(_size(one, d) for one in curves) for d in DIRECTIONS}
+    largest = max(sizes.values())
+    shown = [d for d in DIRECTIONS if sizes[d] >= LEAST * largest]
     figure, axes = new_figure(
-        3, width=12.0 + 4.0 * (len(columns) - 1), row_height=2.2, columns=len(columns),
+        len(shown), width=12.0 + 4.0 * (len(columns) - 1), row_height=2.2, columns=len(columns),
         sharex="col", squeeze=False,
     )  # fmt: skip
     for column, (kind, steps) in zip(axes.T, columns.items(), strict=True):
-        _node_panels(column, curves, Span(results, steps))
+        _node_panels(dict(zip(shown, column, strict=True)), curves, Span(results, steps), largest)
         column[0].set_title(f"Displacements relative to the base{', ' if kind else ''}{kind}")
         column[-1].set_xlabel("time of the deck" if kind == STATIC else "time [s]")
-    for axis, direction in zip(axes[:, 0], "123", strict=True):
+    for axis, direction in zip(axes[:, 0], shown, strict=True):
         axis.set_ylabel(f"U{direction} [mm]")
+    if len(shown) < len(DIRECTIONS):
+        left_out = " and ".join(f"U{d}" for d in DIRECTIONS if d not in shown)
+        remark = f"{left_out} not drawn: less than {LEAST:g} of the largest displacement"
+        axes[0, 0].set_title(f"{axes[0, 0].get_title(loc='left')}\n{remark}")
     axes[0, -1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.align_ylabels(axes[:, 0])
     return sheet.save(figure)
 
 
-def _node_panels(column, curves: list[NodeCurve], span: Span) -> None:
-    """The three directions of some steps."""
+def _size(curve: NodeCurve, direction: str) -> float:
+    """The largest displacement in a direction [m]."""
+    return _largest(np.abs(curve.table[f"U{direction}"][curve.rows]))
+
+
+def _node_panels(
+    panels: dict[str, Axes], curves: list[NodeCurve], span: Span, largest: float
+) -> None:
+    """The directions of some steps; the scale of round-off would make a signal of it."""
     for number, one in enumerate(curves):
-        for axis, direction in zip(column, "123", strict=True):
+        for direction, axis in panels.items():
             time, moved = span.curve(one.table, one.rows, 1000.0 * one.table[f"U{direction}"])
             axis.plot(
                 time, moved, lw=1.0, marker=_mark(len(time)), label=f"{one.name}, node {one.node}",
                 **_look(number),
             )  # fmt: skip
-    for axis in column:
+    for axis in panels.values():
         axis.margins(x=0.0)
+        size = max(_largest(np.abs(line.get_ydata())) for line in axis.lines)  # [mm]
+        if size < LEAST * 1000.0 * largest:
+            axis.set_ylim(-QUIET * 1000.0 * largest, QUIET * 1000.0 * largest)
 
 
 def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
@@ -219,7 +240,11 @@ def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
     shown = [name for name, size in energies.items() if size > LEAST * largest]
     for number, name in enumerate(shown):
         values = scale * table[name]
-        axes[0].plot(table["time"], values, marker=mark, label=name, **_look(number))
+        width = WIDE if number == 0 else NARROW  # the first may coincide with another one
+        axes[0].plot(
+            table["time"], values, marker=mark, ms=4.0 * width, lw=width, label=name,
+            **_look(number),
+        )  # fmt: skip
     # Without zero the scale of one increment is round-off.
     axes[0].axhline(0.0, color=GREY, lw=0.8)
     axes[0].set_title("Energy balance")

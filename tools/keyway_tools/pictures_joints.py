@@ -19,11 +19,15 @@ from .results import Step
 from .si_results import SiResults, saved_increments
 from .upright import Z, axes_with_up_last
 
-STATES = {-2: "not there", -1: "shared node", 0: "open", 1: "stick", 2: "slip", 3: "bonded"}
+NOT_GROUTED, NOT_THERE = -3, -2  # drawn beside the states of job.h5
+STATES = {
+    NOT_GROUTED: "not grouted yet", NOT_THERE: "not there", -1: "shared node",
+    0: "open", 1: "stick", 2: "slip", 3: "bonded",
+}  # fmt: skip
 SHOWN_IN_PLAN = 0.3  # of the area
 WIDEST = 13.0  # [inches]
 ROUND_OFF = 1e-10  # of the size of the model: no slip; displacements are solved to some 1e-12 of it
-STATE_COLOURS = ("#EEEEEE", "#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
+STATE_COLOURS = ("#B5B5B5", "#EEEEEE", "#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
 
 
 class JointView:
@@ -210,23 +214,28 @@ def plot_joint_slips(results: SiResults, scales: Scales, sheet: Sheet) -> list[P
 
 
 def plot_joint_states(results: SiResults, sheet: Sheet) -> list[Path]:
-    """State of every joint at the saved time at which most of the joints' area is open."""
+    """State of every joint at the saved time at which most of the joints' area is open.
+
+    Where joints open in a motion, this is a time of a motion.
+    """
     saved, joints = _saved_joints(results), joints_with_faces(results)
     if not saved or not joints:
         return []
     areas = {name: results.file[f"joints/{name}/area"][:] for name in joints}
     opened = [sum(a[_states(g[n]) == 0].sum() for n, a in areas.items()) for g, _ in saved]
-    group, time = saved[int(np.argmax(opened))]
+    motions = {step.number for step in results.steps() if "DYNAMIC" in step.procedure}
+    shaken = [a if _step_of(g) in motions else 0.0 for a, (g, _) in zip(opened, saved, strict=True)]
+    group, time = saved[int(np.argmax(shaken if max(shaken) > 0.0 else opened))]
     page = JointPage(results, joints)
     colours = ListedColormap(STATE_COLOURS)
-    norm = BoundaryNorm(np.arange(-2.5, 4.0), colours.N)
+    norm = BoundaryNorm(np.arange(-3.5, 4.0), colours.N)
     seen: set[int] = set()
     for name, joint in joints.items():
         states = _states(group[name])
         corners = states[_point_of_corner(results, name, joint)]
         seen |= set(corners.tolist())
         _fill_by_corner(page, name, corners, colours, norm)
-        there = areas[name][states > -2].sum()
+        there = areas[name][states > NOT_THERE].sum()
         share = areas[name][states == 0].sum() / max(there, 1e-300)
         page.frame(name, f"{name}\n{100.0 * share:.3g} % open")
     handles = [
@@ -236,16 +245,25 @@ def plot_joint_states(results: SiResults, sheet: Sheet) -> list[Path]:
     ]
     page.figure.legend(handles=handles, loc="outside right center")
     most = ", with most area open" if max(opened) > 0.0 else ", no joint is open at a saved time"
+    most += " in a motion" if 0.0 < max(shaken) < max(opened) else ""
     headline(page.figure, f"State of joints at t = {time:.5g} s{most}")
     return sheet.save(page.figure)
 
 
 def _states(joint: h5py.Group) -> np.ndarray:
-    """States of the points of a joint; -2 where an element behind the point is absent."""
+    """States of the points of a joint; below zero where an element behind the point is absent, or
+    the point waits for its grout."""
     state = joint["state"][:].astype(int)
     if "grouted" in joint:
-        state[joint["grouted"][:].ravel() == 0] = -2
+        grouted = joint["grouted"][:].ravel()
+        state[grouted == 0] = NOT_THERE
+        state[grouted == 1] = NOT_GROUTED
     return state
+
+
+def _step_of(joints: h5py.Group) -> int:
+    """The step of the joints of an increment, /steps/0002/increments/000010/joints."""
+    return int(joints.name.split("/")[2])
 
 
 def _fill_by_corner(page: JointPage, name: str, state: np.ndarray, colours, norm) -> None:

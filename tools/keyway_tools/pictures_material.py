@@ -128,8 +128,9 @@ def _damage_panel(axis, curves: list[Curve]) -> None:
             axis.plot([], [], style, color=GREY, label=label)
     axis.set_title("Damage")
     axis.set_xlabel("strain [1e-3]")
-    axis.set_ylim(-0.02, 1.02)
-    axis.legend()
+    axis.set_ylim(-0.02, 1.3)  # the words have room above 1
+    axis.set_yticks(np.linspace(0.0, 1.0, 5))
+    axis.legend(loc="upper center", ncols=2)
 
 
 def _energy_panel(axis, curves: list[Curve]) -> None:

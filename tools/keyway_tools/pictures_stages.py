@@ -100,12 +100,29 @@ def _states(results: Results, step: int) -> dict[str, np.ndarray | None]:
 
 
 def _grouted_points(results: Results, step: int) -> dict[str, np.ndarray | None]:
-    """1 for the points of each joint that are grouted at the end of a step, 0 for the others."""
-    states = _states(results, step)
-    return {
-        name: None if state is None else (state == BONDED).astype(int)
-        for name, state in states.items()
-    }
+    """1 for the points of each joint that are grouted at the end of a step, 0 for the others.
+
+    Grout hardens at the end of its step, and job.h5 shows it in the next one: points that wait for
+    grout at the end of a step and are bonded in the next one are grouted in this step.
+    """
+    states, after = _states(results, step), _states(results, _next_step(results, step))
+    found: dict[str, np.ndarray | None] = {}
+    for name, state in states.items():
+        if state is None:
+            found[name] = None
+            continue
+        then = state if after[name] is None else after[name]
+        is_grouted = (state == BONDED) | ((state == NOT_GROUTED) & (then == BONDED))
+        found[name] = is_grouted.astype(int)
+    return found
+
+
+def _next_step(results: Results, step: int) -> int:
+    """The next step in which something can move; the step itself where it is the last one."""
+    steps = {int(key): group for key, group in results.file["steps"].items()}
+    later = [number for number, group in sorted(steps.items())
+             if number > step and "modes" not in group]  # fmt: skip
+    return later[0] if later else step
 
 
 def _has_grouts(results: Results) -> bool:

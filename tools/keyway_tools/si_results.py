@@ -69,6 +69,7 @@ class SiResults(Results):
     def __init__(self, folder: Path | str, job: str | None = None, units: Units | None = None):
         super().__init__(folder, job)
         self.units = units or Units()
+        self.words_on_units = self.remark_on_units = ""  # where the tool has chosen them
 
     @cached_property
     def x(self) -> np.ndarray:
@@ -163,10 +164,11 @@ class SiResults(Results):
 
     @property
     def note(self) -> str:
-        """Deck, date and program in one line."""
+        """Deck, date and program in one line; with units that the tool has chosen."""
         program = self.summary.get("program", {}) if self.path(".json").exists() else {}
         name = " ".join(str(program[key]) for key in ("name", "version") if key in program)
-        return " · ".join(word for word in (self.deck_name, self.date, name) if word)
+        words = (self.deck_name, self.remark_on_units, self.date, name)
+        return " · ".join(word for word in words if word)
 
 
 def saved_increments(results: Results) -> Iterator[tuple[Any, float]]:

@@ -89,8 +89,9 @@ contains
     call list%add('reduced-model', &
                   'reduced model|without REDUCED|*DYNAMIC, REDUCED|is the solver of', &
                   'A step with *DYNAMIC, REDUCED holds linear elastic solids with joints on '// &
-                  'fixed supports. The deck has more: cracking concrete, stages, equations, '// &
-                  'temperatures, moving supports.', &
+                  'fixed supports. The deck has more: cracking concrete, equations, moving '// &
+                  'supports, elements that are absent in the step, temperatures that change in '// &
+                  'it. Stages and temperatures in steps before it are possible.', &
                   'Leave REDUCED out. The full model takes everything.', &
                   '*DYNAMIC, REDUCED, DIRECT', &
                   '*DYNAMIC, DIRECT')

@@ -8,8 +8,8 @@ RESULTS is the folder that a run was given with -o, or a job in it as in out/dam
 principal-stress, displacement and damage envelopes on the dam's faces and on sections, its damaged
 elements, openings, slip and state over the joints, openings in time, the stages of construction,
 the deformed shape, mode shapes, histories of nodes and energies, as far as the run has stored them.
-The pictures show MPa and mm; --units says what the deck has if it is not in m and Pa. The names of
-the pictures are printed.
+The pictures show MPa and mm; --units says what the deck has if it is not in m and Pa. A deck in t,
+mm and s is recognised. The names of the pictures are printed.
 
 The colours of stresses end where 99 % of the nodes do if the extreme is far beyond (a corner), and
 the picture says so. --range full: to the extreme; --range S1=3: to 3 MPa; --range shared: one range
@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from keyway_tools.colour_scale import FIELDS, Scales, parse_levels, parse_ranges
 from keyway_tools.command import command
+from keyway_tools.deck_units import open_in_si
 from keyway_tools.picture_style import FORMATS, Sheet
 from keyway_tools.pictures_curves import (
     plot_damage_growth,
@@ -131,7 +132,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--line", action="append", default=[], metavar="FIELD=VALUE", help=line)
     parser.add_argument("--format", default="png", help="png, svg, pdf, or several with commas")
     parser.add_argument("--animate", choices=("mp4", "gif"), help="only a film of the dam")
-    parser.add_argument("--units", default="m,Pa", help="of the deck, as in mm,MPa (m,Pa)")
+    units = "of the deck, as in mm,MPa (those that its densities show, else m,Pa)"
+    parser.add_argument("--units", help=units)
     chosen = parser.parse_args(arguments)
     chosen.format = tuple(chosen.format.split(","))
     if not set(chosen.format) <= set(FORMATS):
@@ -139,7 +141,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     try:
         chosen.range, chosen.is_shared = parse_ranges(chosen.range)
         chosen.range = replace(chosen.range, levels=parse_levels(chosen.line))
-        chosen.units = Units.parse(chosen.units)
+        chosen.units = chosen.units and Units.parse(chosen.units)
     except ValueError as error:
         parser.error(str(error))
     if len(chosen.results) > 1 and chosen.output:
@@ -163,7 +165,7 @@ def main(arguments: list[str] | None = None) -> int:
             what = f"{missing[0]}.h5" if missing else "job.h5"
             print(f"plot: no {what} in {folder}; give the folder of a run", file=sys.stderr)
             return 2
-        found += [SiResults(folder, job, chosen.units) for job in jobs]
+        found += [open_in_si(folder, job, chosen.units, "plot") for job in jobs]
     try:
         for results in found:
             if results.path(".json").exists():

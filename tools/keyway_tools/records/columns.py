@@ -24,6 +24,11 @@ _UNIT_OF_TIME = re.compile(
     rf"|[\s_]+({_SECONDS}|{_MILLISECONDS})(?![a-z]))",
     re.IGNORECASE,
 )
+# The last word before those of the components: 'columns: t [s]', 'time'.
+_NAME_OF_TIME = re.compile(
+    r"(?:^|[\s:])(?:t|time|zeit)\s*(?:[\[(][^\])]*[\])])?\s*$", re.IGNORECASE
+)
+_UNIT_IN_BRACKETS = re.compile(r"\s*\[[^\]]*\]\s*$")
 COLUMNS, ONE_COLUMN = "columns", "one column"  # kinds of files
 EVEN = 1.0e-3  # admissible scatter of the time between values, over its mean
 
@@ -131,9 +136,15 @@ def _resolution(time: np.ndarray) -> float:
 
 
 def _names_of(heading: list[str], count: int) -> list[str]:
-    """Names of the components from the last line above the numbers, where it has one a column."""
+    """Names of the components from the last line above the numbers, where it has one a column.
+
+    Other words may stand before those of the columns, the first of which is the time:
+    'Record of a dam; columns: t [s], x, y [m/s2]'.
+    """
     if heading:
         words = [w for w in re.split(r"[,;\t]+|\s{2,}", heading[-1].lstrip("#%!/* ")) if w.strip()]
         if len(words) == count + 1:
             return [word.strip() for word in words[1:]]
+        if len(words) > count + 1 and _NAME_OF_TIME.search(words[-count - 1]):
+            return [_UNIT_IN_BRACKETS.sub("", word).strip() for word in words[-count:]]
     return [f"column {k + 2}" for k in range(count)] if count > 1 else ["record"]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +28,9 @@ from .treatment import (
     settle,
     strong_duration,
 )
+
+# Names of vertical components: 'vertical(up-down)', 'UP', 'UD', 'V', 'RSN1_PEL-UP'.
+VERTICAL = re.compile(r"vert|(?<![a-z])(?:up|ud|v|dwn|down)(?![a-z])", re.IGNORECASE)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -71,7 +76,19 @@ def collect(chosen: argparse.Namespace) -> dict[str, Record]:
             f"{len(records)} components ({names}) for the axes {' '.join(axes)}; expected --axes "
             "with another axis for each component, at most three"
         )
-    return dict(sorted(zip(axes, records, strict=True)))
+    found = dict(sorted(zip(axes, records, strict=True)))
+    if chosen.axes is None and len(found) > 1:
+        print(f"make_motion: {note_on_axes(found)}", file=sys.stderr)
+    return found
+
+
+def note_on_axes(records: dict[str, Record]) -> str:
+    """Which component each axis has got by the order of the files."""
+    given = ", ".join(f"{axis} is '{record.name}'" for axis, record in records.items())
+    note = f"{given}: the order of the files; --axes gives another one, as in --axes y z x"
+    upright = [(axis, r.name) for axis, r in records.items() if VERTICAL.search(r.name)]
+    wrong = [f"'{name}' has become {axis}, not z" for axis, name in upright if axis != "z"]
+    return "; ".join([note, *wrong])
 
 
 def refuse_dt(records: list[Record]) -> None:

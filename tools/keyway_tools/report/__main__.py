@@ -17,6 +17,7 @@ from pathlib import Path
 
 from ..colour_scale import Scales, parse_ranges
 from ..command import command
+from ..deck_units import open_in_si
 from ..program import command_name, reason_of
 from ..results import Results
 from ..si_results import SiResults, Units
@@ -36,12 +37,13 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--job", help="the job, where a folder has several")
     what = "end of a scale of colours, as for plot.py: full, FIELD=END"
     parser.add_argument("--range", action="append", default=[], metavar="WHAT", help=what)
-    parser.add_argument("--units", default="m,Pa", help="of the deck, as in mm,MPa (m,Pa)")
+    units = "of the deck, as in mm,MPa (those that its densities show, else m,Pa)"
+    parser.add_argument("--units", help=units)
     parser.add_argument("--pdf", action="store_true", help="print the page to PDF, too")
     chosen = parser.parse_args(arguments)
     try:
         chosen.scales, _ = parse_ranges(chosen.range)
-        chosen.units = Units.parse(chosen.units)
+        chosen.units = chosen.units and Units.parse(chosen.units)
     except ValueError as error:
         parser.error(str(error))
     if chosen.output and len(chosen.results) > 2:
@@ -57,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
         refuse_other_file(chosen.output)
         jobs = [Results(folder, chosen.job).job for folder in chosen.results]
         found = [
-            SiResults(folder, job, chosen.units)
+            open_in_si(folder, job, chosen.units, "report")
             for folder, job in zip(chosen.results, jobs, strict=True)
         ]
         for results in found:

@@ -82,6 +82,8 @@ def verdict(results: SiResults) -> list[tuple[str, str]]:
         found = [("bad", f"The run is incomplete{how}: {why or 'no reason is known'}.")]
         found.append(("fair", _what_follows(results)))
     found += _stability(summary)
+    if results.words_on_units:
+        found.append(("fair", f"Units: {results.words_on_units}."))
     warnings = summary.get("warnings", [])
     if warnings:
         found.append(("fair", f"The program has given {_number(len(warnings), 'warning')}:"))

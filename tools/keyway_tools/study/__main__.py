@@ -30,13 +30,13 @@ from keyway_tools.results import Results
 from .couplings import coupling_rungs
 from .deck_cards import Deck, read_deck
 from .effects import list_effects
-from .errors import errors_of
+from .errors import element_to_check, errors_of
 from .facts import facts_of, write_table
 from .flat_deck import flat
 from .ladder import JOB, Ladder, Outcome
 from .page import accuracy_page, effects_page, what_seconds_are
 from .pictures import draw
-from .rungs import Rung, base_deck, finer_rung, list_rungs, shortened
+from .rungs import Rung, base_deck, element_check, finer_rung, list_rungs, shortened
 from .words import effect_sentences, sentences
 
 # Folders of the deck as it is, in a ladder and among effects
@@ -135,6 +135,8 @@ def study(given: argparse.Namespace, runner: DeckRunner) -> int:
     deck, rungs = what_to_run(given, runner)
     ladder = Ladder(deck, rungs, given.o, runner, given.budget, say)
     outcomes = ladder.run()
+    while not given.effects and (kind := element_to_check(outcomes)):
+        ladder.go_on(outcomes, element_check(kind))
     header = header_of(given, runner, outcomes[0])
     meaning, is_busy = what_seconds_are(given.threads, outcomes)
     if given.effects:

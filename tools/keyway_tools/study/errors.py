@@ -6,6 +6,8 @@ No increment has a smaller error than a finer one.
 Mesh and element: one refinement or two. The limit lies between the extrapolations of first order
 (corners) and of second order (smooth stresses) from the two finest meshes, and of the order that
 three meshes show where they converge regularly; the error is the distance to the farthest one.
+Another element may agree with the limit by chance. It is recommended only after a run on the
+refined mesh, and its error is the larger one of both meshes.
 Errors of time, mesh and iteration are added, and their sum is multiplied by the safety factor of
 Roache (1994), Journal of Fluids Engineering 116, 405-413: 1.25 for limits that three sizes or two
 orders support.
@@ -13,14 +15,14 @@ orders support.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 
 from .ladder import Outcome
 from .measured import QUANTITIES
-from .rungs import BASE, ONCE, TWICE
+from .rungs import BASE, ELEMENT_CHECK, ONCE, TWICE
 
 ORDERS = (0.5, 3.0)  # observed orders in time that count as regular
 GROWTH = 1.1  # a largest stress that grows by more with one refinement is at a singular place
@@ -39,6 +41,7 @@ class Error:
     time: dict[str, float]
     mesh: dict[str, float]
     iteration: float  # of the deck as it is
+    unchecked: set[str] = field(default_factory=set)  # elements without a run on the refined mesh
 
     def total(self, increment: str, mesh: str) -> float | None:
         """Error of a combination with the safety factor; None where a part is not known."""
@@ -89,6 +92,12 @@ def error_of(quantity: str, outcomes: list[Outcome]) -> Error:
         for axis in ("base", "mesh", "element"):
             for outcome, value in values_of(axis, quantity, outcomes):
                 mesh[outcome.name] = max(abs(value - limit) for limit in limits)
+    unchecked = {outcome.name for outcome, _ in values_of("element", quantity, outcomes)}
+    for outcome, value in values_of(ELEMENT_CHECK, quantity, outcomes):
+        kind = element_of(outcome)
+        unchecked.discard(kind)
+        if kind in mesh:
+            mesh[kind] = max(mesh[kind], *(abs(value - limit) for limit in limits))
     tight = [value for outcome, value in values_of("tolerance", quantity, outcomes)
              if outcome.rung.size < 1e-6]  # fmt: skip
     iteration = abs(tight[0] - start) if tight else 0.0
@@ -102,7 +111,24 @@ def error_of(quantity: str, outcomes: list[Outcome]) -> Error:
         {name: error / scale for name, error in time.items()},
         {name: error / scale for name, error in mesh.items()},
         iteration / scale,
+        unchecked,
     )
+
+
+def element_of(check: Outcome) -> str:
+    """The element that a run on the refined mesh checks."""
+    return check.name.partition(",")[0]
+
+
+def element_to_check(outcomes: list[Outcome]) -> str | None:
+    """An element that would be recommended and has no run on the refined mesh yet."""
+    tried = {element_of(one) for one in outcomes if one.rung.axis == ELEMENT_CHECK}
+    for error in errors_of(outcomes):
+        open_to = replace(error, unchecked=error.unchecked & tried)
+        for choice in choices_of(open_to, outcomes):
+            if choice and choice.mesh in error.unchecked:
+                return choice.mesh
+    return None
 
 
 def values_of(axis: str, quantity: str, outcomes: list[Outcome]) -> list[tuple[Outcome, float]]:
@@ -184,6 +210,8 @@ def choices_of(error: Error, outcomes: list[Outcome]) -> list[Choice | None]:
     seconds = {outcome.name: outcome.measured.seconds for outcome in outcomes if outcome.measured}
     found = []
     for increment, mesh in product(error.time, error.mesh):
+        if mesh in error.unchecked:
+            continue
         total = error.total(increment, mesh)
         cost = seconds[mesh] * seconds[increment] / base.seconds
         if total is not None:

@@ -15,14 +15,15 @@ from keyway_tools.results import Results
 from .deck_cards import Deck
 from .measured import Measured, measure, time_in_words
 from .refined_mesh import RefinementError
-from .rungs import TWICE, Rung
+from .rungs import ELEMENT_CHECK, TWICE, Rung
 
 # The order in which the budget is spent.
 PRIORITY = (
     "base", "increment", "mesh", "element", "tolerance", "coupling", "stiffness", "alpha", "solver",
-    "effect", "finer",
+    "effect", "finer", ELEMENT_CHECK,
 )  # fmt: skip
-FORECAST_BY_COUNTS = ("mesh", "coupling", "finer")  # axes that change the size of the model
+# Axes that change the size of the model.
+FORECAST_BY_COUNTS = ("mesh", "coupling", "finer", ELEMENT_CHECK)
 JOB = "study"
 SHORTEST = 10.0  # time that a run has at least before the budget ends it [s]
 
@@ -75,6 +76,17 @@ class Ladder:
             raise RuntimeError(f"the deck as it is does not run: {first.why_not}")
         found = [first, *(self.planned(rung, first) for rung in self.rungs[1:])]
         self.say_plan(found)
+        self.run_planned(found)
+        return found
+
+    def go_on(self, found: list[Outcome], rung: Rung) -> None:
+        """Runs one more rung that the results ask for, and adds it."""
+        outcome = self.planned(rung, found[0])
+        self.run_planned([found[0], outcome])
+        found.append(outcome)
+
+    def run_planned(self, found: list[Outcome]) -> None:
+        """Runs what fits into the budget; the first one, the deck as it is, has run."""
         for outcome in found[1:]:
             if outcome.why_not:
                 self.say(f"{outcome.name}: {outcome.why_not}")
@@ -88,7 +100,6 @@ class Ladder:
                 self.say(f"{outcome.name}: {outcome.why_not}")
                 continue
             self.run_one(outcome)
-        return found
 
     def planned(self, rung: Rung, base: Outcome) -> Outcome:
         """A rung with its predicted time, or with the reason why it cannot be run."""

@@ -19,6 +19,7 @@ INELASTIC = ("CONCRETE DAMAGED PLASTICITY", "PLASTIC", "USER MATERIAL")
 SIZES = (0, 2, 3)  # fields of *DYNAMIC: first, smallest and largest increment
 # Names of rungs
 BASE, ONCE, TWICE = "the deck as it is", "mesh refined", "mesh refined twice"
+ELEMENT_CHECK = "element check"  # an axis
 FINEST_INCREMENT = 0.125  # of the check of a ladder
 # A reduced model with its estimates over the full one: 2.1, 2.1, 1.1 and 0.6 in docs/accuracy.md,
 # less with more unknowns
@@ -144,6 +145,13 @@ def element_kind(kind: str) -> Callable[[Deck], Deck]:
         return new
 
     return change
+
+
+def element_check(kind: str) -> Rung:
+    """Another kind of brick on the refined mesh: where it agrees by chance, this one does not."""
+    change = element_kind(kind)
+    name = f"{kind}, {ONCE}"
+    return Rung(ELEMENT_CHECK, name, 8.0**SLOWEST, 0.5, lambda deck: refine(change(deck)))
 
 
 def tolerance_rungs(deck: Deck) -> list[Rung]:
