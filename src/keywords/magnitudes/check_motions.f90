@@ -20,9 +20,9 @@ module check_motions
   !> tests are given (30 g). A record in g or in m/s2 in a deck in mm has 1e-6 g to 1e-3 g, one in
   !> mm/s2 in a deck in m has 100 g and more.
   real(rk), parameter :: least_peak = 1.0e-3_rk, largest_peak = 50.0_rk
-  !> Parts of the peak and of the time of a record. A step that reaches less sees next to nothing of
-  !> a record, as with times in ms; one that ends within the record may be meant.
-  real(rk), parameter :: seen_share = 0.5_rk, passed_share = 0.01_rk
+  !> Parts of the peak and of the time of a record that a step reaches: less with times in ms, where
+  !> a step as long as the record reaches a thousandth. A step may end early on purpose.
+  real(rk), parameter :: seen_share = 0.5_rk, passed_share = 2.0e-3_rk
   real(rk), parameter :: small_share = 0.01_rk !< of the peak: a first value that counts as zero
 
   !> What the steps see of a record.
