@@ -85,6 +85,7 @@ ROOMS = (
     "keywords/contact",
     "keywords/loads",
     "keywords/checks",
+    "keywords/magnitudes",
     "keywords",
     "app/forecast",
     "app",

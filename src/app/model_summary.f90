@@ -41,9 +41,18 @@ contains
     type(problem), intent(in) :: model
     character(:), allocatable :: text
     text = sign_of_other_units(model%materials)
-    if (text /= '') text = nl//row('units', 'not SI (a '//text//'): read those of the deck in '// &
-                                   'place of m, kg and Pa')
+    if (text /= '') text = nl//row('units', 'not SI (a '//text//'): the numbers below are '// &
+                                   'in the units of your deck')
   end function units_of
+
+  !> A unit of SI, '' where the deck is in other units.
+  pure function unit(model, name)
+    type(problem), intent(in) :: model
+    character(*), intent(in) :: name !< with a blank before
+    character(:), allocatable :: unit
+    unit = name
+    if (sign_of_other_units(model%materials) /= '') unit = ''
+  end function unit
 
   !> A title and the rows below it; nothing where there are no rows.
   pure function titled(title, rows) result(text)
@@ -138,8 +147,9 @@ contains
     text = ''
     do i = 1, size(model%materials)
       associate (now => model%materials(i))
-        text = text//nl//row(now%name, elastic_text(now)//', density '//as_text(now%density)// &
-                             ' kg/m3, damping ALPHA '//as_text(now%alpha)//' 1/s, BETA '// &
+        text = text//nl//row(now%name, elastic_text(now, unit(model, ' Pa'))//', density '// &
+                             as_text(now%density)//unit(model, ' kg/m3')//', damping ALPHA '// &
+                             as_text(now%alpha)//' 1/s, BETA '// &
                              as_text(now%beta)//' s, BASE '// &
                              name_of_base(now%damps_current)//elements_of(model, i))
         if (allocated(now%expansion)) text = text//nl//row('', expansion_text(now))
@@ -149,10 +159,11 @@ contains
   end function materials_of
 
   !> 'E .. Pa, nu ..'; a UMAT exposes no elastic constants.
-  pure function elastic_text(now) result(text)
+  pure function elastic_text(now, pascal) result(text)
     type(material), intent(in) :: now
+    character(*), intent(in) :: pascal !< ' Pa', or '' in a deck in other units
     character(:), allocatable :: text
-    text = 'E '//as_text(now%young)//' Pa, nu '//as_text(now%poisson)
+    text = 'E '//as_text(now%young)//pascal//', nu '//as_text(now%poisson)
     if (now%young <= 0.0_rk) text = 'a UMAT'
   end function elastic_text
 
@@ -202,8 +213,9 @@ contains
       call model%joints(i)%law%reference_stiffness(k)
       text = text//nl//row(model%joints(i)%name, make_of(model%joints(i))//', '// &
                            as_text(model%joints(i)%num_points)// &
-                           ' points, '//as_text(sum(model%joints(i)%area))//' m2, KN '// &
-                           as_text(k(1))//' Pa/m, KT '//as_text(k(2))//' Pa/m, law '// &
+                           ' points, '//as_text(sum(model%joints(i)%area))// &
+                           unit(model, ' m2')//', KN '//as_text(k(1))//unit(model, ' Pa/m')// &
+                           ', KT '//as_text(k(2))//unit(model, ' Pa/m')//', law '// &
                            model%joints(i)%law%name)
     end do
   end function joints_of
@@ -238,9 +250,9 @@ contains
       associate (now => model%covers(i)%cover)
         text = text//nl//row(model%covers(i)%name, '*'//model%covers(i)%kind//': '// &
                              as_text(now%covered_area)//' of '//as_text(now%slave_area)// &
-                             ' m2 of the slave face covered, largest gap '// &
-                             as_text(now%largest_gap)//' m, largest overlap '// &
-                             as_text(now%largest_overlap)//' m')
+                             unit(model, ' m2')//' of the slave face covered, largest gap '// &
+                             as_text(now%largest_gap)//unit(model, ' m')//', largest overlap '// &
+                             as_text(now%largest_overlap)//unit(model, ' m'))
       end associate
     end do
   end function covers_of

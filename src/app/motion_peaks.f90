@@ -1,6 +1,7 @@
 !> Peaks of the base motions of a step, for the summary of a model.
 module motion_peaks
-  use amplitudes, only: amplitude, amplitude_at, one_g
+  use amplitudes, only: one_g
+  use check_motions, only: find_peak
   use check_units, only: has_other_length
   use kinds, only: rk
   use load_base_motion, only: base_motion
@@ -35,26 +36,6 @@ contains
       end associate
     end select
   end function peak_of_motion
-
-  !> The largest value of a history within a step and at its start and end, between two values.
-  pure subroutine find_peak(record, span, peak, at)
-    type(amplitude), intent(in) :: record
-    real(rk), intent(in) :: span(2) !< start and end of the step [s]
-    real(rk), intent(out) :: peak, at !< size, and its time [s]
-    integer :: i
-    peak = -1.0_rk
-    at = span(1)
-    i = maxloc(abs(record%value), dim=1, mask=record%time >= span(1) .and. record%time <= span(2))
-    if (i > 0) then
-      peak = abs(record%value(i))
-      at = record%time(i)
-    end if
-    do i = 1, size(span)
-      if (abs(amplitude_at(record, span(i))) <= peak) cycle
-      peak = abs(amplitude_at(record, span(i)))
-      at = span(i)
-    end do
-  end subroutine find_peak
 
   !> '3.07 m/s2 = 0.313 g'; '3070' where the deck is not in metres.
   pure function in_units(model, acceleration) result(text)

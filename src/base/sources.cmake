@@ -61,6 +61,7 @@ set(sources
   system/undo_journal.f90
   system/undo_pages.c
   system/undo_restore.c
+  text/decimal_commas.f90
   text/invisible_letters.f90
   text/nearest_words.f90
   text/number_ranges.f90

@@ -1,6 +1,7 @@
 !> Checks cards against the specifications of their keywords. Every fault is reported.
 module card_check
   use deck_card, only: card
+  use decimal_commas, only: has_decimal_comma, with_hint_of_point
   use diagnostics, only: diagnostic_list, place, severity_error
   use field_text, only: expected_in, names_of_columns, text_or_nothing
   use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_integer, &
@@ -191,6 +192,11 @@ contains
       if (num_fields > num_columns .and. .not. the_card%spec%repeats_columns) then
         if (.not. has_one_temperature(the_card, line)) then
           call fault_further_columns(the_card, line, faults)
+        else if (has_decimal_comma(the_card%line_as_written(line))) then
+          call the_card%warn_at(faults, line, num_columns, 'the line has the value '// &
+                                the_card%text_at(line, num_columns)//' here and a temperature '// &
+                                'of '//the_card%text_at(line, num_fields), 'a point for '// &
+                                'decimals: commas separate numbers')
         else if (line == 1) then
           call the_card%ignore(faults, 'the temperature has no effect')
         end if
@@ -226,7 +232,9 @@ contains
       if (len(why) > 0) why = ': '//why
       call the_card%fault_at(faults, line, size(spec%columns) + 1, &
                              'found '//as_text(the_card%num_fields(line))//' fields'//why, &
-                             'at most '//as_text(size(spec%columns))//': '//names_of_columns(spec))
+                             with_hint_of_point('at most '//as_text(size(spec%columns))//': '// &
+                                                names_of_columns(spec), &
+                                                the_card%line_as_written(line)))
     end associate
   end subroutine fault_further_columns
 
@@ -235,7 +243,7 @@ contains
     type(card), intent(in) :: the_card
     integer, intent(in) :: line !< data line
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: problem, nearest
+    character(:), allocatable :: problem, nearest, wanted
     integer :: column, number, num_groups, first, last
     associate (columns => the_card%spec%columns)
       num_groups = 1
@@ -253,10 +261,12 @@ contains
           cycle
         end if
         call check_word(the_card%lines%body(first:last), columns(column), problem, nearest)
-        if (len(problem) > 0) then
-          call the_card%fault_at(faults, line, number, problem, expected_in(columns(column)), &
-                                 nearest)
+        if (len(problem) == 0) cycle
+        wanted = expected_in(columns(column))
+        if (columns(column)%kind == kind_real) then
+          wanted = with_hint_of_point(wanted, the_card%line_as_written(line))
         end if
+        call the_card%fault_at(faults, line, number, problem, wanted, nearest)
       end do
     end associate
   end subroutine check_columns

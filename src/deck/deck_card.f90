@@ -51,6 +51,7 @@ module deck_card
     procedure :: place => place_of_card
     procedure :: place_of
     procedure :: place_at
+    procedure :: line_as_written
     procedure :: file_and_line
     procedure :: fault
     procedure :: fault_parameter
@@ -249,6 +250,17 @@ contains
     type(place) :: spot
     spot = self%lines%spot_of_field(line, field, self%keyword)
   end function place_at
+
+  !> A data line as it stands in the deck.
+  pure function line_as_written(self, line) result(text)
+    class(card), intent(in) :: self
+    integer, intent(in) :: line
+    character(:), allocatable :: text
+    type(place) :: spot
+    spot = self%place_at(line, 0)
+    text = ''
+    if (allocated(spot%source)) text = spot%source
+  end function line_as_written
 
   !> 'file:line' of a data line; of the keyword for `line` = 0.
   pure function file_and_line(self, line) result(name)

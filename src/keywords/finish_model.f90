@@ -16,6 +16,7 @@ module finish_model
   use joined_twice, only: refuse_joined_twice
   use material_catalogue, only: names_of_laws
   use model_draft, only: draft, has_request
+  use verify_elements, only: refuse_inverted
   implicit none
   private
   public :: complete_model
@@ -35,6 +36,8 @@ contains
     call complete_materials(model, faults)
     call check_materials(model, faults)
     call check_solids(model, faults)
+    ! Joints find their sides by the solids: an inverted solid would be blamed on its joint.
+    if (.not. faults%has_errors()) call refuse_inverted(model, faults)
     call complete_interfaces(model, faults)
     call complete_clearances(model, faults)
     if (.not. faults%has_errors()) call refuse_joined_twice(model, faults)

@@ -6,7 +6,10 @@ module read_deck
   use check_bases, only: warn_of_bases
   use check_histories, only: warn_of_histories
   use check_idle_steps, only: warn_of_idle_steps
+  use check_inner_faces, only: warn_of_inner_faces
   use check_loads, only: warn_of_loads
+  use check_magnitudes, only: warn_of_magnitudes
+  use check_motions, only: warn_of_motions
   use check_growth, only: warn_of_growth
   use check_pressures, only: warn_of_pressures
   use check_units, only: warn_of_units
@@ -101,7 +104,10 @@ contains
     call warn_of_unused(model, faults)
     call warn_of_loads(model, faults)
     call warn_of_pressures(model, faults)
+    call warn_of_inner_faces(model, faults)
     call warn_of_units(model, faults)
+    call warn_of_magnitudes(model, faults)
+    call warn_of_motions(model, faults)
     call warn_of_growth(model, faults)
     call warn_of_heat(model, faults)
     call warn_of_water(model, faults)

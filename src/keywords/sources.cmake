@@ -13,6 +13,7 @@ set(sources
   checks/check_growth.f90
   checks/check_histories.f90
   checks/check_idle_steps.f90
+  checks/check_inner_faces.f90
   checks/check_loads.f90
   checks/check_mesh.f90
   checks/check_names.f90
@@ -21,7 +22,6 @@ set(sources
   checks/check_repeats.f90
   checks/check_shapes.f90
   checks/check_steps.f90
-  checks/check_units.f90
   checks/check_unused.f90
   checks/check_water.f90
   contact/finish_contact.f90
@@ -60,6 +60,9 @@ set(sources
   loads/keywords_loads.f90
   loads/keywords_reservoir.f90
   loads/uplift_edges.f90
+  magnitudes/check_magnitudes.f90
+  magnitudes/check_motions.f90
+  magnitudes/check_units.f90
   materials/concrete_remarks.f90
   materials/concrete_request.f90
   materials/concrete_widths.f90
@@ -103,6 +106,7 @@ set(sources
   steps/moved_supports.f90
   steps/record_units.f90
   verify_blocks.f90
+  verify_elements.f90
   verify_model.f90
   verify_reduced.f90
   verify_ties.f90

@@ -2,16 +2,14 @@
 module verify_model
   use body_parts, only: find_bodies, free_motion
   use diagnostics, only: diagnostic_list
-  use element_catalogue, only: is_solid
-  use element_hex8, only: hex8_gradients
   use guest_list, only: bonds_of_model, supports_of_step
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use model_draft, only: draft
   use row_tables, only: row_table
-  use shape_hex8, only: corner_fault
   use sorted_lists, only: contains_position
   use verify_blocks, only: verify_free_blocks
+  use verify_elements, only: refuse_inverted, warn_of_corners
   use verify_reduced, only: verify_reduced_steps
   use verify_ties, only: verify_tied_parts
   use write_text, only: as_text
@@ -25,7 +23,8 @@ contains
   subroutine verify(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    call verify_elements(model, faults)
+    call refuse_inverted(model, faults)
+    call warn_of_corners(model, faults)
     call verify_mass(model, faults)
     call verify_modes(model, faults)
     call verify_velocities(model, faults)
@@ -35,66 +34,6 @@ contains
     if (.not. faults%has_errors()) call verify_tied_parts(model, faults)
     if (.not. faults%has_errors()) call verify_free_blocks(model, faults)
   end subroutine verify
-
-  !> The Jacobian must be positive at the integration points; at corners its sign is a warning.
-  subroutine verify_elements(model, faults)
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: x(3, 8), gradient(3, 8, 8), weight(8)
-    integer :: e, corner, num_odd, first_odd
-    num_odd = 0
-    first_odd = 0
-    associate (mesh => model%problem%mesh)
-      do e = 1, mesh%num_elements
-        if (.not. is_solid(mesh%element_type(e))) cycle
-        x = mesh%x(:, mesh%nodes(:, e))
-        call hex8_gradients(x, gradient, weight, corner)
-        if (corner > 0) then
-          call fault_jacobian(model, e, corner, faults)
-        else if (corner_fault(x) > 0) then
-          num_odd = num_odd + 1
-          if (first_odd == 0) first_odd = e
-        end if
-      end do
-    end associate
-    if (num_odd > 0) call warn_of_corners(model, first_odd, num_odd, faults)
-  end subroutine verify_elements
-
-  !> One warning for all elements with a bad corner.
-  subroutine warn_of_corners(model, e, num_odd, faults)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: e !< position of the first element
-    integer, intent(in) :: num_odd !< how many there are
-    type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: others
-    integer :: corner
-    others = ''
-    if (num_odd > 1) others = '; also '//as_text(num_odd - 1)//' more element'
-    if (num_odd > 2) others = others//'s'
-    associate (spot => model%element_origin(e), mesh => model%problem%mesh)
-      corner = corner_fault(mesh%x(:, mesh%nodes(:, e)))
-      call model%cards(spot%card)%warn(faults, 'element '//as_text(mesh%element_id(e))// &
-                                       ' has a Jacobian that is zero or negative at corner '// &
-                                       as_text(corner)//' (node '// &
-                                       as_text(mesh%node_id(mesh%nodes(corner, e)))//')'//others)
-    end associate
-  end subroutine warn_of_corners
-
-  subroutine fault_jacobian(model, e, corner, faults)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: e !< position of the element
-    integer, intent(in) :: corner !< 1..8
-    type(diagnostic_list), intent(inout) :: faults
-    associate (spot => model%element_origin(e), mesh => model%problem%mesh)
-      call model%cards(spot%card)%fault_at(faults, spot%line, 1, 'element '// &
-                                           as_text(mesh%element_id(e))// &
-                                           ' is inverted or flat at corner '//as_text(corner)// &
-                                           ' (node '// &
-                                           as_text(mesh%node_id(mesh%nodes(corner, e)))//')', &
-                                           'a positive Jacobian: nodes 1-4 of one face, '// &
-                                           '5-8 of the opposite one above them')
-    end associate
-  end subroutine fault_jacobian
 
   !> Dynamic and frequency steps need a mass.
   subroutine verify_mass(model, faults)

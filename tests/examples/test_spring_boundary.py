@@ -124,6 +124,6 @@ def test_messages_and_help_name_the_keyword(example):
     text = program.call("--keywords", "SPRING BOUNDARY").stdout
     assert "springs along the normal" in text
     run = program(bar("1e8", "").replace("SURFACE=BASE\n1e8", "SURFACE=BASIS\n1e8"), code=2)
-    assert "there is no surface 'BASIS' so far" in run.stderr
+    assert "there is no surface 'BASIS' above this line" in run.stderr
     run = program(bar("-1e8", ""), code=2)
     assert "found '-1e8'; expected springs along the normal, a number >= 0" in run.stderr

@@ -36,7 +36,7 @@ contains
     call list%add('outside-its-place', &
                   'is outside |is in a part|is in an instance|begins in a part|inside a '// &
                   'step|inside a part|not directly in|nothing is open here|is not closed|in '// &
-                  'all steps|before the first step|has a procedure already|so it is no '// &
+                  'all steps|before the first step|already has a procedure|so it is no '// &
                   'keyword of|no step follows', &
                   'The keyword stands where it has no meaning: a property outside a material, '// &
                   'a load outside a step, a part that is still open.', &

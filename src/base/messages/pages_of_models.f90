@@ -13,6 +13,7 @@ contains
     call pages_from_no_effect(list)
     call pages_from_loose_block(list)
     call pages_from_plastic_table(list)
+    call pages_from_inner_face(list)
     call pages_from_faces_apart(list)
     call pages_from_acts_twice(list)
   end subroutine add_pages_of_models
@@ -141,6 +142,19 @@ contains
                   'a smaller damage, or a larger opening')
   end subroutine pages_from_plastic_table
 
+  subroutine pages_from_inner_face(list)
+    type(page_list), intent(inout) :: list
+    call list%add('inner-face', &
+                  'lies inside the solid', &
+                  'Water or a pressure acts on a face between two solids. The load pushes the '// &
+                  'two apart: on the element in front it acts in the direction opposite to '// &
+                  'that on its outer face.', &
+                  'Name the outer face of the same elements, often the opposite one; ParaView '// &
+                  'shows the elements.', &
+                  'UPEL, S4', &
+                  'UPEL, S6')
+  end subroutine pages_from_inner_face
+
   subroutine pages_from_faces_apart(list)
     type(page_list), intent(inout) :: list
     call list%add('faces-apart', &
@@ -169,7 +183,7 @@ contains
     call list%add('water', &
                   'wetted|does not reach joint|above the top of the surface|TAIL WATER|below '// &
                   'BED|the water stands along|wets the surface|in one of the steps|at '// &
-                  'reservoir', &
+                  'reservoir|is at the foot of|acts upwards', &
                   'The level, the bed, the surface or the uplift of a reservoir do not fit the '// &
                   'model: no face is wet, or the water of a joint begins nowhere.', &
                   'Compare LEVEL and BED with the heights of the surface. UPLIFT needs a '// &
@@ -177,7 +191,8 @@ contains
                   'LEVEL=105 where the dam stands at z = 400 to 535', &
                   'LEVEL=505, BED=400')
     call list%add('units', &
-                  'not in SI|must have the same unit', &
+                  'not in SI|must have the same unit|of the heaviest solid|give waves of|is a '// &
+                  'coefficient, not', &
                   'The numbers of the deck are of another system of units than the defaults of '// &
                   'the keyword (1000 kg/m3, 9.81 m/s2), or of two systems.', &
                   'Use one system in the whole deck and give DENSITY and GRAVITY in it. With '// &

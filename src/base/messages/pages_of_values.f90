@@ -41,8 +41,10 @@ contains
                   'expected|nodes on an element|an odd number of values|the file holds|as many '// &
                   'nodes as|components; expected', &
                   'A data line, a card or a file has more or fewer values than expected: a '// &
-                  'comma too many or too few, a line that broke in the middle.', &
-                  'Count the fields of the line. A line that goes on ends with a comma.', &
+                  'comma too many or too few, a comma in place of a decimal point, a line '// &
+                  'that broke in the middle.', &
+                  'Count the fields of the line: commas separate numbers, so that 0,2 is two '// &
+                  'of them. A line that goes on ends with a comma.', &
                   '*ELEMENT; 1, 2, 3, 4, 5, 6, 7, 8', &
                   '1, then eight nodes')
     call list%add('not-ascending', &

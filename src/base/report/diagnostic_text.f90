@@ -18,6 +18,7 @@ module diagnostic_text
 
   integer, parameter :: widest_line = 100 !< letters of a deck line that are shown
   integer, parameter :: margin = 30 !< letters shown before the word when a line is cut
+  character(*), parameter :: cut_mark = '...' !< where letters of a line are left out
   integer, parameter :: number_width = 5 !< room for the line number
   character, parameter :: tab = achar(9)
 
@@ -200,10 +201,14 @@ contains
         last = last + 1
       end do
     end if
-    text = new_line('a')//line_label(as_text(spot%line))//printable(spot%source(first:last))
+    text = printable(spot%source(first:last))
+    if (first > 1) text = cut_mark//text
+    if (last < len_trim(spot%source)) text = text//cut_mark
+    text = new_line('a')//line_label(as_text(spot%line))//text
     if (spot%column == 0 .or. spot%length == 0) return
-    text = text//new_line('a')//line_label('')//blank_like(spot, first)// &
-           carets(spot, last)
+    text = text//new_line('a')//line_label('')
+    if (first > 1) text = text//repeat(' ', len(cut_mark))
+    text = text//blank_like(spot, first)//carets(spot, last)
   end function excerpt
 
   !> '   12 | '

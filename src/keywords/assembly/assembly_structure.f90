@@ -221,7 +221,8 @@ contains
     do k = 1, size(parts)
       names(k) = parts(k)%name
     end do
-    call this%fault_parameter(faults, 'PART', "there is no part '"//this%text('PART')//"' so far", &
+    call this%fault_parameter(faults, 'PART', "there is no part '"//this%text('PART')// &
+                              "' above this line", &
                               'the name of a *PART above', nearest_word(this%word('PART'), names))
   end subroutine fault_unknown_part
 

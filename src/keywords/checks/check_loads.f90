@@ -15,10 +15,13 @@ module check_loads
   use write_text, only: as_text
   implicit none
   private
-  public :: card_of_dload, warn_of_loads
+  public :: card_of_dload, card_of_motion, warn_of_loads
 
   real(rk), parameter :: small_share = 0.01_rk !< of the peak: the end of a record counts as zero
   real(rk), parameter :: round_off = 1.0e-9_rk
+  !> Part of the height of a surface: less is 0.2 m of water at a face of 100 m. A level in m beside
+  !> coordinates in mm is a thousandth of what was meant.
+  real(rk), parameter :: least_wet = 2.0e-3_rk
 
 contains
 
@@ -197,24 +200,34 @@ contains
     type(step_load), intent(in) :: work
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: last, ends_at
-    integer :: i, place
+    integer :: place
     associate (record => model%problem%amplitudes(work%amplitude))
       last = record%value(size(record%value))
       if (abs(last) <= small_share*maxval(abs(record%value))) return
       ends_at = record%time(size(record%time))
       if (ends_at > (1.0_rk + round_off)*end_of_clock(model, s, record)) return
-      place = 0
-      do i = 1, size(step)
-        if (step(i) > s .or. .not. is_keyword(model%cards(i), 'BASE MOTION')) cycle
-        if (model%cards(i)%word('AMPLITUDE') /= record%name) cycle
-        if (model%cards(i)%integer('DOF') == dof) place = i
-      end do
+      place = card_of_motion(model, step, s, dof, record%name)
       if (place == 0) return
       call model%cards(place)%warn(faults, "the record '"//record%name//"' ends at "// &
                                    as_text(last*work%end_factor)//', not at zero: this '// &
                                    'acceleration goes on after t = '//as_text(ends_at)//' s')
     end associate
   end subroutine warn_of_end
+
+  !> The last *BASE MOTION, up to a step, that moves a direction by a record; 0 for none.
+  pure integer function card_of_motion(model, step, s, dof, record) result(place)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    integer, intent(in) :: s, dof
+    character(*), intent(in) :: record !< its name
+    integer :: i
+    place = 0
+    do i = 1, size(step)
+      if (step(i) > s .or. .not. is_keyword(model%cards(i), 'BASE MOTION')) cycle
+      if (model%cards(i)%word('AMPLITUDE') /= record) cycle
+      if (model%cards(i)%integer('DOF') == dof) place = i
+    end do
+  end function card_of_motion
 
   !> Time at the end of a step on the clock of a history [s].
   pure real(rk) function end_of_clock(model, s, record) result(time)
@@ -225,24 +238,34 @@ contains
     if (record%uses_total_time) time = sum(model%problem%steps(:s)%duration)
   end function end_of_clock
 
-  !> Water above the highest node of its surface does not act.
+  !> Water above the highest node of its surface does not act; water at its very foot is a level in
+  !> another unit than that of the coordinates.
   subroutine warn_of_levels(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: crest, level, bed
+    real(rk) :: crest, foot, level, bed
     integer :: i, f, found, up
     do i = 1, size(model%cards)
       if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
       found = find_surface_name(model, model%cards(i)%word('SURFACE'))
       up = model%cards(i)%integer('UP')
       crest = -huge(1.0_rk)
+      foot = huge(1.0_rk)
       associate (mesh => model%problem%mesh, faces => model%problem%surfaces(found))
         do f = 1, size(faces%element)
-          crest = max(crest, maxval(mesh%x(up, face_nodes(mesh, faces%element(f), faces%face(f)))))
+          associate (heights => mesh%x(up, face_nodes(mesh, faces%element(f), faces%face(f))))
+            crest = max(crest, maxval(heights))
+            foot = min(foot, minval(heights))
+          end associate
         end do
       end associate
       level = model%cards(i)%real('LEVEL')
       bed = model%cards(i)%real('BED')
+      if (level - max(bed, foot) < least_wet*(crest - foot)) then
+        call model%cards(i)%warn(faults, 'the level, '//as_text(level)//', is at the foot of '// &
+                                 'the surface, which goes from '//as_text(foot)//' to '// &
+                                 as_text(crest), 'a level in the unit of the coordinates')
+      end if
       if (level <= crest + round_off*(level - bed)) cycle
       call model%cards(i)%warn(faults, 'the level, '//as_text(level)//', is above the top of '// &
                                'the surface, '//as_text(crest)//': water above the top does '// &

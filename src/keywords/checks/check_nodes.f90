@@ -206,10 +206,10 @@ contains
     end do
     associate (given => model%problem%initial_values(i))
       call model%cards(place)%warn( &
-        faults, 'node '//as_text(model%problem%mesh%node_id(given%node))//' has an initial '// &
-        trim(merge('velocity    ', 'displacement', k == 1))//' in direction '// &
-        as_text(given%dof)//' already, '//as_text(value(given%dof, given%node, k))// &
-        '; the last one acts, '//as_text(given%value))
+        faults, 'node '//as_text(model%problem%mesh%node_id(given%node))//' already has '// &
+        'the initial '//trim(merge('velocity    ', 'displacement', k == 1))//' '// &
+        as_text(value(given%dof, given%node, k))//' in direction '//as_text(given%dof)// &
+        '; the later value '//as_text(given%value)//' is used')
     end associate
   end subroutine warn_of_second_values
 end module check_nodes

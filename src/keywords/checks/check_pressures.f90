@@ -14,7 +14,7 @@ module check_pressures
   use write_text, only: as_text
   implicit none
   private
-  public :: warn_of_pressures
+  public :: card_of_faces, find_faces, warn_of_pressures
 
 contains
 
@@ -97,7 +97,7 @@ contains
     character(:), allocatable :: what, remedy
     integer :: found
     associate (loads => model%problem%loads)
-      found = card_of(model, s, loads(second)%item)
+      found = card_of_faces(model, s, loads(second)%item)
       what = 'pressure'
       remedy = 'a load is replaced under its own name, or with OP=NEW'
       if (loads(second)%item%family == 'RESERVOIR') then
@@ -111,8 +111,8 @@ contains
     end associate
   end subroutine warn_of_both
 
-  !> The last card that gives a load, up to a step.
-  pure integer function card_of(model, s, item) result(found)
+  !> The last card that gives a load on faces, up to a step.
+  pure integer function card_of_faces(model, s, item) result(found)
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
     class(load), intent(in) :: item
@@ -133,5 +133,5 @@ contains
         if (model%cards(i)%word_at(line, 1) == item%target) found = i
       end do
     end do
-  end function card_of
+  end function card_of_faces
 end module check_pressures

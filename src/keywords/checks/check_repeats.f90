@@ -123,8 +123,8 @@ contains
       associate (name => new%spec%parameters(i)%name)
         if (.not. (old%has(name) .and. new%has(name))) cycle
         is_repeat = .true.
-        call new%warn(faults, name//' is given in this step already, '//old%text(name)// &
-                      '; the last one acts, '//new%text(name))
+        call new%warn(faults, 'this step already has '//name//'='//old%text(name)// &
+                      '; the later value '//new%text(name)//' is used')
       end associate
     end do
   end subroutine compare_controls

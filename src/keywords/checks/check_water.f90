@@ -125,5 +125,31 @@ contains
         return
       end select
     end do
+    call warn_of_upward_weight(this, model, s, faults)
   end subroutine warn_of_axis
+
+  !> The weights of a step act upwards, all of them: one that acts upwards beside one that acts
+  !> downwards may stand for an earthquake.
+  subroutine warn_of_upward_weight(this, model, s, faults)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s !< step
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: upwards
+    integer :: i
+    upwards = 0.0_rk
+    do i = 1, size(model%problem%steps(s)%loads)
+      associate (work => model%problem%steps(s)%loads(i))
+        select type (weight => model%problem%loads(work%load)%item)
+        type is (gravity_load)
+          upwards = work%end_factor*weight%acceleration(this%integer('UP'))
+          if (work%amplitude > 0 .or. .not. upwards > 0.0_rk) return
+        end select
+      end associate
+    end do
+    if (.not. upwards > 0.0_rk) return
+    call this%warn(faults, 'the weight of this step acts upwards: axis '// &
+                   as_text(this%integer('UP'))//' points up (UP)', &
+                   'GRAV, '//as_text(upwards)//' with a direction of -1 along this axis')
+  end subroutine warn_of_upward_weight
 end module check_water

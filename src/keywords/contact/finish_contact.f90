@@ -22,7 +22,7 @@ contains
                           this%text('SLAVE')//"' and the master surface '"// &
                           this%text('MASTER')//"'", 'surfaces of a *CONTACT PAIR')
         else if (given(j) > 0) then
-          call this%fault(faults, 'the pair has a *CLEARANCE already', 'one for each pair', &
+          call this%fault(faults, 'the pair already has a *CLEARANCE', 'one for each pair', &
                           first=model%cards(given(j))%place())
         else if (model%joints(j)%is_adjusted) then
           call this%fault(faults, 'the pair has ADJUST', 'ADJUST or *CLEARANCE, not both', &

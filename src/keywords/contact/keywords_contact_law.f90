@@ -95,7 +95,7 @@ contains
     end if
     associate (law => model%interactions(number))
       if (law%behavior_card > 0) call this%fault( &
-        faults, 'the surface interaction has a *SURFACE BEHAVIOR already', &
+        faults, 'the surface interaction already has a *SURFACE BEHAVIOR', &
         'one for each *SURFACE INTERACTION', first=model%cards(law%behavior_card)%place())
       law%behavior_card = model%current
       law%stiffness = this%real_at(1, 1)
@@ -139,7 +139,7 @@ contains
     if (number == 0) return
     associate (law => model%interactions(number))
       if (law%friction_card > 0) call this%fault( &
-        faults, 'the surface interaction has a *FRICTION already', &
+        faults, 'the surface interaction already has a *FRICTION', &
         'one for each *SURFACE INTERACTION', first=model%cards(law%friction_card)%place())
       law%friction_card = model%current
       law%friction = this%real_at(1, 1)

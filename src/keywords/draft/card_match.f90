@@ -74,8 +74,25 @@ contains
         names(i) = specs(i)%name
       end do
       nearest = nearest_word(the_card%keyword, names)
+      if (len(nearest) == 0) nearest = with_comma(the_card%keyword, names)
       if (len(nearest) > 0) nearest = '*'//nearest
       call the_card%fault(faults, 'unknown keyword', nearest=nearest)
     end if
   end subroutine fault_unknown
+
+  !> 'DYNAMIC, DIRECT' for 'DYNAMIC DIRECT': a keyword and words behind it without a comma. ''
+  !> where the text begins with no keyword.
+  pure function with_comma(text, names) result(better)
+    character(*), intent(in) :: text
+    character(*), intent(in) :: names(:) !< known keywords
+    character(:), allocatable :: better
+    integer :: i, longest
+    better = ''
+    longest = 0
+    do i = 1, size(names)
+      if (len_trim(names(i)) <= longest .or. index(text, trim(names(i))//' ') /= 1) cycle
+      longest = len_trim(names(i))
+      better = text(:longest)//','//text(longest + 1:)
+    end do
+  end function with_comma
 end module card_match

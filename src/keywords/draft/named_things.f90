@@ -165,7 +165,8 @@ contains
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
     call this%fault_at(faults, line, field, &
-                       'there is no '//kind//" set '"//this%text_at(line, field)//"' so far", &
+                       'there is no '//kind//" set '"//this%text_at(line, field)// &
+                       "' above this line", &
                        'the id of one '//kind//' or the name of a set defined above', &
                        nearest_word(this%word_at(line, field), set_names(sets)))
   end subroutine fault_unknown_set
@@ -203,7 +204,7 @@ contains
       members = sets%sets(found)%members
     else
       call this%fault_parameter(faults, parameter, 'there is no '//kind//" set '"// &
-                                this%text(parameter)//"' so far", &
+                                this%text(parameter)//"' above this line", &
                                 'the name of a set defined above', &
                                 nearest_word(this%word(parameter), set_names(sets)))
     end if
@@ -230,7 +231,7 @@ contains
     found = find_surface_name(model, this%word_at(line, at))
     if (found > 0) return
     call this%fault_at(faults, line, at, "there is no surface '"//this%text_at(line, at)// &
-                       "' so far", 'a surface defined above', &
+                       "' above this line", 'a surface defined above', &
                        nearest_word(this%word_at(line, at), surface_names(model)))
   end subroutine find_surface_at
 

@@ -46,7 +46,7 @@ contains
     integer :: line
     associate (now => model%problem%materials(model%num_materials))
       if (allocated(now%expansion)) then
-        call this%fault(faults, "material '"//now%name//"' has an *EXPANSION already", 'one only')
+        call this%fault(faults, "material '"//now%name//"' already has an *EXPANSION", 'one only')
         return
       end if
       table%zero = this%real('ZERO')

@@ -197,7 +197,7 @@ contains
       nodes = model%node_sets%sets(found)%members
     else
       allocate (nodes(0))
-      call fault(reader, 1, "there is no node set '"//word(reader, 1)//"' so far", &
+      call fault(reader, 1, "there is no node set '"//word(reader, 1)//"' above this line", &
                  'the id of one node or the name of a set defined above', faults)
     end if
   end subroutine find_nodes

@@ -54,7 +54,8 @@ contains
     new%surface = find_surface_name(model, this%word('SURFACE'))
     if (new%surface == 0) then
       call this%fault_parameter(faults, 'SURFACE', "there is no surface '"// &
-                                this%text('SURFACE')//"' so far", 'a surface defined above', &
+                                this%text('SURFACE')//"' above this line", &
+                                'a surface defined above', &
                                 nearest_word(this%word('SURFACE'), surface_names(model)))
     end if
     call elements_of_set(this, 'ELSET', model, faults, new%elements)

@@ -117,7 +117,7 @@ contains
     found = find_surface_name(model, this%word_at(line, number))
     if (found > 0) return
     call this%fault_at(faults, line, number, "there is no surface '"// &
-                       this%text_at(line, number)//"' so far", 'a surface defined above', &
+                       this%text_at(line, number)//"' above this line", 'a surface defined above', &
                        nearest_word(this%word_at(line, number), surface_names(model)))
   end subroutine find_surface
 end module keywords_tie

@@ -2,6 +2,7 @@
 module keywords_loads
   use applied_load, only: load
   use deck_card, only: card
+  use decimal_commas, only: with_hint_of_point
   use diagnostics, only: diagnostic_list
   use dload_labels, only: choices_of_labels, dload_label, find_label, labels_in_words, &
                           list_labels, meaning_of_labels, num_labels, pattern_of
@@ -169,7 +170,8 @@ contains
     end if
     associate (label => labels(found))
       if (this%num_fields(line) > label%num_numbers + 2) then
-        call this%fault_at(faults, line, label%num_numbers + 3, 'too many numbers', label%expected)
+        call this%fault_at(faults, line, label%num_numbers + 3, 'too many numbers', &
+                           with_hint_of_point(label%expected, this%line_as_written(line)))
       end if
       do i = 3, label%num_numbers + 2
         if (this%is_real_at(line, i)) cycle

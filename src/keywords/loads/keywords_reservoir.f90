@@ -62,7 +62,8 @@ contains
     found = find_surface_name(model, this%word('SURFACE'))
     if (found == 0) then
       call this%fault_parameter(faults, 'SURFACE', "there is no surface '"// &
-                                this%text('SURFACE')//"' so far", 'a surface defined above', &
+                                this%text('SURFACE')//"' above this line", &
+                                'a surface defined above', &
                                 nearest_word(this%word('SURFACE'), surface_names(model)))
       return
     end if
@@ -83,6 +84,8 @@ contains
     lake%is_hydrostatic = this%word('HYDROSTATIC') == 'YES'
     lake%has_added_mass = this%word('ADDED MASS') == 'WESTERGAARD'
     lake%is_diagonal = this%word('DIRECTION') == 'DIAGONAL'
+    ! The fault of an empty surface is reported.
+    if (size(lake%faces%element) == 0 .and. faults%has_errors()) return
     if (wetted_area(lake, model%problem%mesh) <= 0.0_rk) then
       call this%fault_parameter(faults, 'SURFACE', 'no face of the surface is wetted', &
                                 'a surface with faces between BED, '//this%text('BED')// &

@@ -46,7 +46,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     associate (now => model%problem%materials(model%num_materials))
       if (allocated(now%law)) then
-        call this%fault(faults, "material '"//now%name//"' has an *ELASTIC already", 'one only')
+        call this%fault(faults, "material '"//now%name//"' already has an *ELASTIC", 'one only')
         return
       end if
       now%young = this%real_at(1, 1)

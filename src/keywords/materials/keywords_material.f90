@@ -70,7 +70,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     associate (now => model%problem%materials(model%num_materials))
       if (now%density > 0.0_rk) then
-        call this%fault(faults, "material '"//now%name//"' has a *DENSITY already", 'one only')
+        call this%fault(faults, "material '"//now%name//"' already has a *DENSITY", 'one only')
       end if
       now%density = this%real_at(1, 1)
     end associate
@@ -105,7 +105,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     associate (now => model%problem%materials(model%num_materials))
       if (now%alpha > 0.0_rk .or. now%beta > 0.0_rk) then
-        call this%fault(faults, "material '"//now%name//"' has a *DAMPING already", 'one only')
+        call this%fault(faults, "material '"//now%name//"' already has a *DAMPING", 'one only')
       end if
       now%alpha = this%real('ALPHA')
       now%beta = this%real('BETA')
@@ -121,8 +121,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     if (spot%card > 0) then
       associate (now => model%problem%materials(model%num_materials))
-        call this%fault(faults, "material '"//now%name//"' has a *"//this%spec%name//' already', &
-                        'one only', first=model%cards(spot%card)%place())
+        call this%fault(faults, "material '"//now%name//"' already has a *"// &
+                        this%spec%name, 'one only', first=model%cards(spot%card)%place())
       end associate
     else
       spot = model%here(0)

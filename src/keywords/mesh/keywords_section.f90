@@ -90,7 +90,7 @@ contains
         earlier = mesh%section_of_element(e)
         if (earlier > 0) then
           call this%fault_parameter(faults, 'ELSET', 'element '//as_text(mesh%element_id(e))// &
-                                    ' has a section already', 'one section for each element', &
+                                    ' already has a section', 'one section for each element', &
                                     first=model%cards(model%sections(earlier)%spot%card)%place())
           return
         end if

@@ -50,7 +50,7 @@ contains
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
     if (status /= 0) then
       call faults%add(severity_error, spot, "cannot open the file '"//path//"'", &
-                      'a file that exists, relative to the deck')
+                      wanted_file(path), file_in_other_case(path))
     else
       number = 0
       do
@@ -142,6 +142,34 @@ contains
     if (upper_case(path(len(path) - 3:)) /= '.AT2') return
     text = 'FORMAT=AT2 for a PEER record, or a number'
   end function expected_word
+
+  !> What the name of a file should be: paths of Windows have another separator.
+  pure function wanted_file(path) result(text)
+    character(*), intent(in) :: path
+    character(:), allocatable :: text
+    text = 'a file that exists, relative to the deck'
+    if (index(path, '\') > 0) text = text//'; / separates folders here, not \'
+  end function wanted_file
+
+  !> The name of a file that exists, all of its letters small or large; '' for none.
+  function file_in_other_case(path) result(name)
+    character(*), intent(in) :: path
+    character(:), allocatable :: name
+    character(len(path)) :: small
+    logical :: is_there
+    integer :: i, first
+    first = index(path, '/', back=.true.) + 1
+    small = path
+    do i = first, len(path)
+      if (path(i:i) >= 'A' .and. path(i:i) <= 'Z') small(i:i) = achar(iachar(path(i:i)) + 32)
+    end do
+    name = small(first:)
+    inquire (file=small, exist=is_there)
+    if (is_there) return
+    name = upper_case(path(first:))
+    inquire (file=path(:first - 1)//name, exist=is_there)
+    if (.not. is_there) name = ''
+  end function file_in_other_case
 
   !> Place of a word in the file.
   pure function spot_in_file(path, number, first, last, line, named_at) result(spot)

@@ -129,10 +129,10 @@ contains
           if (abs(table%value(dof, nodes(i)) - value) <= 0.0_rk .and. &
               (table%history(dof, nodes(i)) == history .or. abs(value) <= 0.0_rk)) cycle
           call this%warn_at(faults, line, 1, 'node '// &
-                            as_text(model%problem%mesh%node_id(nodes(i)))//' has a '// &
-                            'displacement in direction '//as_text(dof)//' in this step '// &
-                            'already, '//as_text(table%value(dof, nodes(i)))//'; the '// &
-                            'last one acts, '//as_text(value))
+                            as_text(model%problem%mesh%node_id(nodes(i)))//' already '// &
+                            'has the displacement '//as_text(table%value(dof, nodes(i)))// &
+                            ' in direction '//as_text(dof)//' in this step; the later value '// &
+                            as_text(value)//' is used')
           return
         end do
       end do
@@ -169,7 +169,7 @@ contains
     if (.not. this%is_empty_at(line, 3)) last = this%integer_at(line, 3)
     if (last < first) then
       call this%fault_at(faults, line, 3, 'the last dof is below the first', &
-                         'first dof <= last dof')
+                         'the smaller one first, as in 1, 3 for all three directions')
     end if
     if (last > 3) call this%ignore(faults, 'dof 4 to 6 have no effect: solids have no rotations')
     last = min(last, 3)

@@ -211,7 +211,7 @@ contains
     end do
     if (size(new%members) == 0) then
       call this%fault_parameter(faults, 'JOINT', "there is no joint '"//this%text('JOINT')// &
-                                "' so far", 'the name of a *JOINT', &
+                                "' above this line", 'the name of a *JOINT', &
                                 nearest_word(new%name, joint_names(model)))
     end if
     if (this%has('NSET')) call nodes_of_set(this, 'NSET', model, faults, new%near_nodes)

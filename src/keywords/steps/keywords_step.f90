@@ -335,7 +335,7 @@ contains
     type(place) :: spot
     if (model%now%procedure%name /= '') then
       call this%fault(faults, &
-                      'the step has a procedure already: *'//trim(model%now%procedure%name), &
+                      'the step already has a procedure: *'//trim(model%now%procedure%name), &
                       'one procedure in a step')
     end if
     model%now%procedure = procedure_named(procedure)

@@ -5,7 +5,8 @@ module extreme_errors
   use envelopes, only: envelope
   use extremes, only: extreme
   use kinds, only: rk
-  use place_errors, only: error_at_node, not_known
+  use material_damage_plasticity, only: concrete_law
+  use place_errors, only: bounded_by_law, error_at_node, left_elasticity, not_known
   use problem_definition, only: problem
   use singular_places, only: is_singular, singular_nodes
   use stress_fields, only: recovered_fields
@@ -44,8 +45,30 @@ contains
     else
       item%error = error_at_node(model, now, stresses, node, merge(3, 1, item%wants_smallest))
       item%found_at = item%largest%at(1)%value
+      if (.not. is_singular(item%cause) .or. item%error <= left_elasticity) return
+      if (is_bounded(model, node)) item%error = bounded_by_law
     end if
   end subroutine update_error
+
+  !> Whether all solids at a node are of concrete, which has a strength in tension and compression.
+  logical function is_bounded(model, node)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: node
+    integer :: e, m
+    is_bounded = .false.
+    do e = 1, model%mesh%num_elements
+      m = model%mesh%material_of_element(e)
+      if (m == 0) cycle
+      if (.not. any(model%mesh%nodes(:, e) == node)) cycle
+      select type (law => model%materials(m)%law)
+      type is (concrete_law)
+        is_bounded = .true.
+      class default
+        is_bounded = .false.
+        return
+      end select
+    end do
+  end function is_bounded
 
   !> Whether an extreme has grown at its place by little since its error was found.
   pure logical function has_grown_little(model, before, item) result(is_near)

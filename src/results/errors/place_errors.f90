@@ -15,10 +15,11 @@ module place_errors
   use tensor6, only: principal_values
   implicit none
   private
-  public :: error_at_node, not_known, left_elasticity
+  public :: error_at_node, not_known, left_elasticity, bounded_by_law
 
-  !> In place of an error.
-  real(rk), parameter :: not_known = -1.0_rk, left_elasticity = -2.0_rk
+  !> In place of an error. The law of a solid bounds its stress at a singular place before the solid
+  !> has left elasticity there, too.
+  real(rk), parameter :: not_known = -1.0_rk, left_elasticity = -2.0_rk, bounded_by_law = -3.0_rk
 
 contains
 

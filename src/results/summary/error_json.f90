@@ -3,7 +3,7 @@ module error_json
   use kinds, only: rk
   use dual_solutions, only: of_displacement, of_opening
   use goal_errors, only: goal_error
-  use place_errors, only: left_elasticity, not_known
+  use place_errors, only: bounded_by_law, left_elasticity, not_known
   use singular_places, only: is_singular, words_of_cause
   use json_writer, only: json_text
   use problem_definition, only: problem
@@ -149,7 +149,10 @@ contains
             .and. .not. is_singular(item%cause)) cycle
         call json%open_object(trim(item%name))
         call json%put_real(item%largest%at(1)%value, 'value')
-        if (item%error <= left_elasticity) then
+        if (item%error <= bounded_by_law) then
+          call json%put_text('a singular place, where the law of the solid bounds the stress', &
+                             'not_known')
+        else if (item%error <= left_elasticity) then
           call json%put_text('the solid has left elasticity', 'not_known')
         else if (is_singular(item%cause)) then
           call json%put_text(words_of_cause(item%cause), 'singular')

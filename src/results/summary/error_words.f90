@@ -4,7 +4,7 @@ module error_words
   use envelopes, only: envelope
   use goal_errors, only: goal_error
   use kinds, only: rk
-  use place_errors, only: left_elasticity
+  use place_errors, only: bounded_by_law, left_elasticity
   use problem_definition, only: problem
   use run_records, only: run_record
   use run_summaries, only: run_summary
@@ -77,6 +77,12 @@ contains
     type(envelope), intent(in) :: item
     character(:), allocatable :: text
     text = ''
+    if (item%error <= bounded_by_law) then
+      text = ', a singular place ('//words_of_cause(item%cause)//'): the strength of the solid '// &
+             'bounds the stress; values above the strength come from extrapolation to the '// &
+             'node ('//trim(item%name)//'_POINT has the points)'
+      return
+    end if
     if (item%error <= left_elasticity) then
       text = ', error not known: the solid has left elasticity there'
       return

@@ -95,7 +95,8 @@ contains
     found = find_surface_name(model, this%word('SURFACE'))
     if (found == 0) then
       call this%fault_parameter(faults, 'SURFACE', "there is no surface '"// &
-                                this%text('SURFACE')//"' so far", 'a surface defined above', &
+                                this%text('SURFACE')//"' above this line", &
+                                'a surface defined above', &
                                 nearest_word(this%word('SURFACE'), surface_names(model)))
       return
     end if

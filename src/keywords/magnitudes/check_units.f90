@@ -11,7 +11,7 @@ module check_units
   use write_text, only: as_text
   implicit none
   private
-  public :: sign_of_other_units, has_other_length, warn_of_units
+  public :: sign_of_other_units, has_other_length, unit_of_length, warn_of_units
 
   !> Densities of solids in SI lie above: a tenth of that of water. Concrete has 2.4 in t/m3, 2.4e-3
   !> in kt/m3 (MN, m, s) and 2.4e-9 in t/mm3 [kg/m3].
@@ -23,8 +23,13 @@ module check_units
   real(rk), parameter :: fastest_solid = 3.0e4_rk
   !> Densities per mm3 lie below (2.4e-6 in kg/mm3), per m3 above (2.4e-3 in kt/m3).
   real(rk), parameter :: lightest_in_metres = 1.0e-4_rk
+  !> Densities of the heaviest solid in t/mm3: concrete has 2.4e-9, gold 1.9e-8. Below, a density
+  !> may stand for no mass.
+  real(rk), parameter :: least_in_tonnes = 1.5e-9_rk, largest_in_tonnes = 2.0e-8_rk
   !> Range of g in m/s2 as decks write it.
   real(rk), parameter :: least_g = 9.7_rk, largest_g = 10.1_rk
+  !> The default of THICKNESS of *JOINT LAW [m].
+  real(rk), parameter :: usual_thickness = 0.02_rk
   !> A SCALE below scales a record, one above turns m/s2 into mm/s2.
   real(rk), parameter :: largest_scale = 100.0_rk
 
@@ -67,6 +72,20 @@ contains
     end if
   end function has_other_length
 
+  !> Length of a metre in the unit of length of the deck, 1 or 1000; 0 where the densities do not
+  !> show it beyond doubt: those per ft3, in3 and cm3 lie between.
+  pure real(rk) function unit_of_length(materials) result(metre)
+    type(material), intent(in) :: materials(:)
+    real(rk) :: heaviest
+    heaviest = maxval([0.0_rk, materials%density])
+    metre = 0.0_rk
+    if (heaviest >= lightest_solid) then
+      metre = 1.0_rk
+    else if (heaviest >= least_in_tonnes .and. heaviest <= largest_in_tonnes) then
+      metre = 1000.0_rk
+    end if
+  end function unit_of_length
+
   !> The deck must have no errors.
   subroutine warn_of_units(model, faults)
     type(draft), intent(in) :: model
@@ -89,12 +108,18 @@ contains
           if (.not. this%has('DENSITY')) call this%warn(faults, 'DENSITY is 1000 by default'//why)
           if (.not. (in_metres .or. this%has('GRAVITY'))) then
             call this%warn(faults, 'GRAVITY is 9.81 by default'//why)
+          else if (.not. in_metres .and. is_g_in_metres(this%real('GRAVITY'))) then
+            call this%warn(faults, 'GRAVITY of '//this%text('GRAVITY')//why)
           end if
         else if (in_metres) then
           cycle
         else if (is_keyword(this, 'JOINT LAW')) then
-          if (.not. (this%has('THICKNESS') .or. this%has('KN'))) then
+          if (this%has('KN')) cycle
+          if (.not. this%has('THICKNESS')) then
             call this%warn(faults, 'THICKNESS, which KN comes from, is 0.02 by default'//why)
+          else if (abs(this%real('THICKNESS') - usual_thickness) <= 0.0_rk) then
+            call this%warn(faults, 'THICKNESS, which KN comes from, is '// &
+                           this%text('THICKNESS')//', the default for metres,'//why)
           end if
         else if (is_keyword(this, 'INTERFACE')) then
           if (.not. this%has('STIFFNESS')) then
@@ -110,6 +135,11 @@ contains
     end do
   end subroutine warn_of_units
 
+  pure logical function is_g_in_metres(g)
+    real(rk), intent(in) :: g
+    is_g_in_metres = abs(g) >= least_g .and. abs(g) <= largest_g
+  end function is_g_in_metres
+
   !> A weight with g in m/s2.
   subroutine warn_of_gravity(this, why, faults)
     type(card), intent(in) :: this
@@ -118,8 +148,7 @@ contains
     integer :: line
     do line = 1, this%num_lines
       if (this%word_at(line, 2) /= 'GRAV') cycle
-      if (abs(abs(this%real_at(line, 3)) - 0.5_rk*(least_g + largest_g)) > &
-          0.5_rk*(largest_g - least_g)) cycle
+      if (.not. is_g_in_metres(this%real_at(line, 3))) cycle
       call this%warn_at(faults, line, 3, 'gravity of '//this%text_at(line, 3)//why)
       exit
     end do
