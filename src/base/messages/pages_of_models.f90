@@ -11,12 +11,30 @@ contains
   subroutine add_pages_of_models(list)
     type(page_list), intent(inout) :: list
     call pages_from_no_effect(list)
+    call pages_from_replaced_weight(list)
     call pages_from_loose_block(list)
     call pages_from_plastic_table(list)
     call pages_from_inner_face(list)
     call pages_from_faces_apart(list)
     call pages_from_acts_twice(list)
   end subroutine add_pages_of_models
+
+  subroutine pages_from_replaced_weight(list)
+    type(page_list), intent(inout) :: list
+    call list%add('replaced-weight', &
+                  'of an earlier step ends', &
+                  'GRAV of a set replaces the GRAV that an earlier step gave to the same set, '// &
+                  'also where its direction is another one. The earlier weight does not act '// &
+                  'any more. CalculiX adds the two.', &
+                  'Give both lines in this step if both are meant.', &
+                  'DAM, GRAV, 2., 1., 0., 0.', &
+                  'DAM, GRAV, 9.81, 0., 0., -1. and DAM, GRAV, 2., 1., 0., 0.')
+    call list%add('nothing-left', &
+                  'no solid is left', &
+                  '*MODEL CHANGE, REMOVE has taken away all solids of the model. The step has '// &
+                  'nothing to analyse.', &
+                  'Remove the parts that are built later alone, or add a part in this step.')
+  end subroutine pages_from_replaced_weight
 
   subroutine pages_from_no_effect(list)
     type(page_list), intent(inout) :: list

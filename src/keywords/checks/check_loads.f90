@@ -72,7 +72,7 @@ contains
             if (.not. is_turned(model, s, old)) cycle
             call model%cards(card_of_dload(model, step, s, old%target))%warn( &
               faults, "'"//old%target//"' of an earlier step ends: this card replaces it by "// &
-              'one of another direction; expected both directions in this step if both act')
+              'one of another direction; expected both directions in this step if both are meant')
           end select
         end associate
       end do
