@@ -23,7 +23,7 @@ contains
   subroutine verify(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    call refuse_inverted(model, faults)
+    call refuse_inverted(model, faults) ! once more: ties and clearances have moved nodes
     call warn_of_corners(model, faults)
     call verify_mass(model, faults)
     call verify_modes(model, faults)

@@ -243,15 +243,15 @@ def read_results(deck: Path, record: Record, before: tuple[int, int] | None) -> 
     increment writes none, and marks that of an earlier deck: the one in the folder is not its own.
     """
     folder = Path(record.folder)
-    told = (folder / "batch.out").read_text(errors="replace").strip().splitlines() or [""]
+    lines = (folder / "batch.out").read_text(errors="replace").strip().splitlines() or [""]
     summary = None
     is_written = state_of(folder / f"{deck.stem}.json") not in (None, before)
-    if is_written and record.exit_code != BAD_DECK and not told[-1].endswith(IN_USE):
+    if is_written and record.exit_code != BAD_DECK and not lines[-1].endswith(IN_USE):
         summary = summary_of(folder, deck)
     if summary is None:
         if record.status == "finished":
             record.status = "no results"
-        record.message = told[-1] if record.exit_code == SYSTEM_FAILED else told[0]
+        record.message = lines[-1] if record.exit_code == SYSTEM_FAILED else lines[0]
         return
     record.has_results = True
     # The system's figure includes the moment before the child process starts the program.
@@ -265,4 +265,4 @@ def read_results(deck: Path, record: Record, before: tuple[int, int] | None) -> 
     record.extremes["DAMAGET"] = damage.get("value")  # written also without *ENVELOPE
     record.message = summary.get("message") or ""
     if record.exit_code == SYSTEM_FAILED:
-        record.message = record.message or told[-1]
+        record.message = record.message or lines[-1]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
 from keyway_tools.deck_bytes import capitals
 
@@ -14,6 +15,7 @@ from .fields import Value, as_text, quoted_if_needed
 _MEMBERS = {"NSET": "NODE", "ELSET": "ELEMENT"}
 _NODES = {"IFACE4": 4}  # of an element; 8 for all others
 _A_LINE = 12
+Place = TypeVar("Place")
 
 
 def collect(cards: Iterable[Card], kind: str) -> dict[str, set[int]]:
@@ -51,17 +53,32 @@ def _first_numbers(source: Card, card: Card) -> Iterator[int]:
 
 
 def _members(source: Card, card: Card, sets: dict[str, set[int]]) -> Iterator[int]:
-    """Members of *NSET or *ELSET: numbers, sets above, ranges with GENERATE."""
-    for row in card.data:
-        if "GENERATE" in source.parameters:
-            first, last, step = (_number(text, card) for text in [*row, "1", "1"][:3])
+    """Members of *NSET or *ELSET."""
+    rows = ((card, row) for row in card.data)
+    return members_of(rows, "GENERATE" in source.parameters, sets, _number)
+
+
+def members_of(
+    rows: Iterable[tuple[Place, Sequence[str]]],
+    generates: bool,
+    sets: Mapping[str, Iterable[int]],
+    number: Callable[[str, Place], int],
+) -> Iterator[int]:
+    """Members that data lines of *NSET or *ELSET name: numbers, sets above, ranges with GENERATE.
+
+    `rows` are the lines, each with its place; `sets` have names in capitals; `number` reads a field
+    at a place, or raises.
+    """
+    for place, row in rows:
+        if generates:
+            first, last, step = (number(text, place) for text in [*row, "1", "1"][:3])
             yield from range(first, last + 1, max(step, 1))
             continue
         for text in row:
             if capitals(text) in sets:
                 yield from sets[capitals(text)]
             elif text:
-                yield _number(text, card)
+                yield number(text, place)
 
 
 def _number(text: str, card: Card) -> int:

@@ -15,7 +15,9 @@ import meshio
 import numpy as np
 from keyway.deck import Card, Deck, DeckError
 from keyway.deck.data import is_data
+from keyway.deck.sets import members_of
 
+from ..deck_bytes import capitals
 from .mesh_error import MeshError
 
 # Types of elements, the kind of the cell and its number of nodes.
@@ -56,22 +58,17 @@ class _Sets:
 
     def add(self, name: str, members: Iterable[int]) -> None:
         """Add members to a set."""
-        key = same_case(name)
+        key = capitals(name.strip())
         self.names.setdefault(key, name)
         self.numbers.setdefault(key, []).extend(members)
 
     def members(self, card: Card, source: Card) -> Iterator[int]:
         """The members that the lines of a card *NSET or *ELSET name. Raises MeshError."""
-        for place, row in _rows(card):
-            if "GENERATE" in source.parameters:
-                first, last, step = (_whole(place, word) for word in [*row, "1", "1"][:3])
-                yield from range(first, last + 1, max(step, 1))
-                continue
-            for word in row:
-                if same_case(word) in self.numbers:
-                    yield from self.numbers[same_case(word)]
-                elif word:
-                    yield _whole(place, word, " or the name of a set above")
+        generates = "GENERATE" in source.parameters
+        other = "" if generates else " or the name of a set above"
+        return members_of(
+            _rows(card), generates, self.numbers, lambda word, place: _whole(place, word, other)
+        )
 
 
 class _Reader:
@@ -256,8 +253,3 @@ def _whole(place: str, word: str, other: str = "") -> int:
         return int(word)
     except ValueError:
         raise MeshError(f"{place}: found '{word}'; expected a whole number{other}") from None
-
-
-def same_case(name: str) -> str:
-    """A name for comparison: the letters A to Z are equal in both cases, others are not."""
-    return re.sub("[a-z]+", lambda found: found[0].upper(), name.strip())

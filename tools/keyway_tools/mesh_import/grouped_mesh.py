@@ -11,7 +11,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from .deck_mesh import read_deck_mesh, same_case
+from ..deck_bytes import capitals
+from .deck_mesh import read_deck_mesh
 from .mesh_error import MeshError
 
 CORNERS = {
@@ -137,7 +138,7 @@ def names_of_groups(mesh: meshio.Mesh) -> dict[str, str]:
     origins: dict[str, str] = {}
     for name in of_cells + of_points:
         word = deck_name(name)
-        if same_case(origins.setdefault(word, name)) != same_case(name):
+        if capitals(origins.setdefault(word, name).strip()) != capitals(name.strip()):
             raise MeshError(
                 f"groups '{origins[word]}' and '{name}' would both be {word}; expected names that "
                 "differ in letters A to Z, digits and underscores"
