@@ -65,6 +65,16 @@ def test_letters_beyond_ascii_are_a_mark_for_each_byte(block):
         block.node("FUSS Ö")
 
 
+def test_a_set_named_like_the_file_of_another_keeps_its_table(program_path, tmp_path):
+    """The file of the last set is the eighth: its position alone gives it that of another."""
+    members = {f"Q_R_{k}": {1} for k in (7, 8, 9)} | {"Q_R": {22}, "Q R": {2101}}
+    deck = package.Deck(BLOCK)
+    deck.add("".join(f"*NSET, NSET={name}\n{min(node)}\n" for name, node in members.items()))
+    deck.add("".join(f"*NODE PRINT, NSET={name}\nU\n" for name in members), step=1)
+    run = package.run(deck, threads=1, results=tmp_path, program=program_path)
+    assert {name: nodes(run.node(name)) for name in members} == members
+
+
 def test_a_set_without_a_table_has_not_that_of_another(block, tmp_path):
     folder = tmp_path / "results"
     shutil.copytree(block.folder, folder)

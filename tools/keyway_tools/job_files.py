@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import glob
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -70,8 +71,9 @@ def table_of(results: Results, kind: str, name: str) -> str:
     """The table of a set or a joint; `kind` is node, el or joint.
 
     Names that differ in letters which files do not have share a word: of `K R` and `K_R` the
-    second table gets its position behind the word. The members, from job.h5, then tell which table
-    is whose. Raises LookupError without a table, and where nothing tells.
+    second table gets its position behind the word, twice where the first result is the name of
+    a set. The members, from job.h5, then tell which table is whose. Raises LookupError without a
+    table, and where nothing tells.
     """
     own = capitals(name)
     word = as_file_word(own)
@@ -80,7 +82,7 @@ def table_of(results: Results, kind: str, name: str) -> str:
     if first not in known:
         there = ", ".join(sorted(known)) or "none"
         raise LookupError(f"no table '{first}' in {results.folder}; there are: {there}")
-    numbered = [table for k, table in enumerate(known, 1) if table == f"{first}_{k}"]
+    numbered = [table for table in known if re.fullmatch(rf"{re.escape(first)}(_\d+)+", table)]
     if "_" not in word:  # all letters stand in the name of the file
         return first
     try:

@@ -155,19 +155,31 @@ contains
     header = header_of(model, record%fields, kinds_of_prints(file%kind), file%fields)
   end function header_of_file
 
-  !> The name of a set or joint in its file name. Where another file has this name (sets 'A B' and
-  !> 'A_B'), the position of the file is appended.
+  !> The name of a set or joint in the path of its file. Where a file before has this name (sets
+  !> 'A B' and 'A_B'), the position of the file is appended until no set or joint has this name.
   pure function unique_name(files, f) result(name)
     type(history_file), intent(in) :: files(:)
     integer, intent(in) :: f !< position of the file
     character(:), allocatable :: name
-    integer :: other
     name = safe_name(files(f)%name)
-    do other = 1, f - 1
-      if (files(other)%kind /= files(f)%kind) cycle
-      if (safe_name(files(other)%name) == name) name = name//'_'//as_text(f)
+    if (.not. is_taken(files(:f - 1), files(f)%kind, name)) return
+    do while (is_taken(files, files(f)%kind, name))
+      name = name//'_'//as_text(f)
     end do
   end function unique_name
+
+  !> Has a file of this kind this name without a number?
+  pure logical function is_taken(files, kind, name)
+    type(history_file), intent(in) :: files(:)
+    integer, intent(in) :: kind !< position in `kinds_of_prints`
+    character(*), intent(in) :: name
+    integer :: f
+    is_taken = .false.
+    do f = 1, size(files)
+      if (files(f)%kind /= kind) cycle
+      if (safe_name(files(f)%name) == name) is_taken = .true.
+    end do
+  end function is_taken
 
   !> Adds the fields of a request to its file; adds the file when it is new.
   subroutine add_request(model, request, record, files)
