@@ -183,7 +183,6 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--motion-dt",
         type=above_zero,
-        default=0.01,
         help="time between values of one column [s] (0.01)",
     )
     group.add_argument(

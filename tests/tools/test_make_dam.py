@@ -188,6 +188,15 @@ def test_options_of_the_dynamic_step_need_a_motion(tmp_path, capsys, options):
     assert not (tmp_path / "dam.inp").exists()
 
 
+def test_a_record_with_its_own_times_takes_no_other(tmp_path, capsys):
+    (tmp_path / "a.txt").write_text("# t [s] a [m/s2]\n0. 0.\n.005 1.\n.01 0.\n")
+    words = ["-o", str(tmp_path / "dam.inp"), "--motion", str(tmp_path / "a.txt")]
+    assert make_dam.main([*words, "--motion-dt", "0.02"]) == 2
+    assert "--motion-dt beside a file of several columns" in capsys.readouterr().err
+    assert make_dam.main(words) == 0
+    assert "DT=0.005" in (tmp_path / "dam.inp").read_text()
+
+
 def test_title_and_joints_in_words(tmp_path):
     deck, _ = write_deck(tmp_path, "--joints", "0", "--no-rock")
     assert "*HEADING\nArch dam\n" in deck

@@ -9,7 +9,7 @@ from .arch_deck import DeckOptions
 MOST_PRINTED = 2**31 - 1  # integers of a deck
 # Options of the dynamic step or of its motion, with their defaults
 OF_MOTION = {
-    "motion_dt": DeckOptions.motion_dt,
+    "motion_dt": None,
     "motion_unit": None,
     "duration": DeckOptions.duration,
     "increment": DeckOptions.increment,

@@ -57,6 +57,20 @@ def read_columns(path: Path, lines: list[str], unit: str | None, dt: float | Non
     ]
 
 
+def refuse_dt(records: list[Record], option: str) -> None:
+    """Raises RecordError for an option with the time between values, beside a file whose first
+    column are times, or beside no file of one column.
+    """
+    columns = [record for record in records if record.layout == COLUMNS]
+    if columns:
+        raise RecordError(
+            f"{columns[0].source}: {option} beside a file of several columns, the first of which "
+            f"are times; expected one value a line, or no {option}"
+        )
+    if all(record.layout != ONE_COLUMN for record in records):
+        raise RecordError(f"{option} has no effect: the files say the time between their values")
+
+
 def _split_heading(path: Path, lines: list[str]) -> tuple[list[str], list[list[float]]]:
     """The lines above the numbers, and the numbers of each line."""
     heading: list[str] = []

@@ -16,7 +16,7 @@ from ..motion_files import write_amplitude
 from ..motion_pictures import Accelerogram, plot_accelerograms
 from ..option_types import above_zero, finite
 from ..response_spectrum import GRAVITY
-from .columns import COLUMNS, ONE_COLUMN
+from .columns import refuse_dt
 from .pictures import plot_spectra
 from .read_record import read_record
 from .record import AXES, FACTORS, Record, RecordError
@@ -68,7 +68,7 @@ def collect(chosen: argparse.Namespace) -> dict[str, Record]:
     """Components of all files, by axis."""
     records = [r for file in chosen.record for r in read_record(file, chosen.unit, chosen.dt)]
     if chosen.dt is not None:
-        refuse_dt(records)
+        refuse_dt(records, "--dt")
     axes = chosen.axes or AXES[: len(records)]
     if len(axes) != len(records) or len(set(axes)) != len(axes):
         names = ", ".join(record.name for record in records)
@@ -89,20 +89,6 @@ def note_on_axes(records: dict[str, Record]) -> str:
     upright = [(axis, r.name) for axis, r in records.items() if VERTICAL.search(r.name)]
     wrong = [f"'{name}' has become {axis}, not z" for axis, name in upright if axis != "z"]
     return "; ".join([note, *wrong])
-
-
-def refuse_dt(records: list[Record]) -> None:
-    """Error: --dt beside a file whose first column is taken for times, or beside no file of one
-    column.
-    """
-    columns = [record for record in records if record.layout == COLUMNS]
-    if columns:
-        raise RecordError(
-            f"{columns[0].source}: --dt beside a file of several columns, the first of which are "
-            "times; expected one value a line, or no --dt"
-        )
-    if all(record.layout != ONE_COLUMN for record in records):
-        raise RecordError("--dt has no effect: the files say the time between their values")
 
 
 def scale_of(records: dict[str, Record], chosen: argparse.Namespace, peak: float) -> float:

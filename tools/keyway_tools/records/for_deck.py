@@ -6,9 +6,12 @@ import math
 from pathlib import Path
 
 from ..motion_files import write_amplitude
+from .columns import refuse_dt
 from .read_record import read_record
 from .record import AXES
 from .treatment import same_times
+
+USUAL_TIME = 0.01  # between values of one column [s]
 
 
 def is_plain(path: Path) -> bool:
@@ -27,7 +30,7 @@ def check_number(components: int) -> None:
 
 
 def motion_files(
-    files: list[Path], unit: str | None, dt: float, prefix: Path
+    files: list[Path], unit: str | None, dt: float | None, prefix: Path
 ) -> tuple[list[Path], float]:
     """Files along x, y, z with values in m/s2, and the time between the values [s].
 
@@ -35,15 +38,18 @@ def motion_files(
     written as PREFIX_x.txt, PREFIX_y.txt, PREFIX_z.txt. Raises ValueError with the file, what is
     wrong and what is expected.
     """
+    usual = USUAL_TIME if dt is None else dt
     if not files:
-        return [], dt
+        return [], usual
     missing = [file for file in files if not file.is_file()]
     if missing:
         raise ValueError(f"there is no motion file '{missing[0]}'")
     if unit is None and all(is_plain(file) for file in files):
         check_number(len(files))
-        return files, dt
-    records = [record for file in files for record in read_record(file, unit, dt)]
+        return files, usual
+    records = [record for file in files for record in read_record(file, unit, usual)]
+    if dt is not None:
+        refuse_dt(records, "--motion-dt")
     check_number(len(records))
     treated = same_times(dict(zip(AXES, records, strict=False)), None)
     prefix.parent.mkdir(parents=True, exist_ok=True)

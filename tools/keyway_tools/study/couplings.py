@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ..deck_bytes import capitals
 from .deck_cards import Card, Deck, fields_of, number_of, quoted
 from .mesh_sets import element_rows, list_card, read_sets
 from .refined_mesh import BRICKS, FACE_NODES, RefinementError
@@ -187,7 +188,7 @@ def facets_of(deck: Deck, surface: str) -> list[Facet]:
     rows = {number: nodes for card in deck.of("ELEMENT") for number, nodes in element_rows(card)}
     found = []
     for card in deck.of("SURFACE"):
-        if card.value("NAME") != surface.strip('"').upper():
+        if card.value("NAME") != capitals(surface.strip('"')):
             continue
         for line in card.lines:
             label, face = (item.strip() for item in fields_of(line)[:2])

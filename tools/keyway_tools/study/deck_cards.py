@@ -12,7 +12,7 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..deck_bytes import place_of, read_deck_text
+from ..deck_bytes import capitals, place_of, read_deck_text
 
 # Cards with files beside the deck: the file is named by this parameter.
 FILE_PARAMETER = "INPUT"
@@ -63,7 +63,7 @@ class Card:
 
 def plain_name(label: str) -> str:
     """A name of a deck in capitals, without quotes and the blanks around it."""
-    return label.strip().strip("\"'").upper()
+    return capitals(label.strip().strip("\"'"))
 
 
 def quoted(name: str) -> str:

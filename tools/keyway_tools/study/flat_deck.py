@@ -13,7 +13,7 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..deck_bytes import read_deck_text
+from ..deck_bytes import capitals, read_deck_text
 from .deck_cards import Card, Deck, fields_of, number_of
 from .mesh_sets import element_rows
 
@@ -136,7 +136,7 @@ def rewritten(card: Card, owner: Instance, instances: dict[str, Instance]) -> Ca
         for name in new.parameters.keys() - {"INPUT"}:
             if found := in_instance(card.value(name), instances):
                 new.parameters[name] = plain(".".join(found))
-    scope = instances.get((new.parameters.pop("INSTANCE", "") or "").strip('"').upper(), owner)
+    scope = instances.get(capitals((new.parameters.pop("INSTANCE", "") or "").strip('"')), owner)
     if card.keyword == "NODE":
         new.lines = [node_line(line, owner) for line in card.lines]
     elif card.keyword == "ELEMENT":
@@ -168,7 +168,7 @@ def items(card: Card, line: str, scope: Instance, instances: dict[str, Instance]
 
 def in_instance(item: str, instances: dict[str, Instance]) -> tuple[str, str] | None:
     """The instance and the name of INSTANCE.X, in capitals; None for other words."""
-    found = re.fullmatch(r'"?([^".]+)"?\.("?[^"]+"?)', item.upper())
+    found = re.fullmatch(r'"?([^".]+)"?\.("?[^"]+"?)', capitals(item))
     return (found[1], found[2].strip('"')) if found and found[1] in instances else None
 
 
@@ -176,7 +176,7 @@ def label(item: str, owner: Instance) -> str:
     """A number or a name of an instance in the flat model."""
     if item.isdigit():
         return str(int(item) + owner.offset)
-    return plain(f"{owner.name}.{item.upper()}") if owner.name else item
+    return plain(f"{owner.name}.{capitals(item)}") if owner.name else item
 
 
 def plain(name: str) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
+from ..deck_bytes import capitals
 from ..mesh_data import BRICK_FACES
 from ..study.deck_cards import Deck, fields_of, read_deck
 from ..study.mesh_sets import MeshSets, element_rows, read_sets
@@ -54,11 +55,11 @@ def read_dam(path: Path, dam: str, upstream: str, downstream: str, up: int | Non
         what = "the mesh has parts and instances (*PART)"
         raise ValueError(f"{path}: {what}; expected *NODE and *ELEMENT outside of parts")
     sets = read_sets(deck)
-    if dam.upper() not in sets.element_sets:
+    if capitals(dam) not in sets.element_sets:
         raise ValueError(
             f"{path}: no set of elements '{dam}'; expected one of {_list(sets.element_sets)}"
         )
-    elements = _bricks(deck, sets.element_sets[dam.upper()])
+    elements = _bricks(deck, sets.element_sets[capitals(dam)])
     if not elements:
         raise ValueError(f"{path}: set '{dam}' has no element of 8 nodes")
     numbers = np.unique(np.concatenate([np.array(nodes) for nodes in elements.values()]))
@@ -114,7 +115,7 @@ def _face(
     path: Path, deck: Deck, sets: MeshSets, name: str, elements: dict[int, list[int]]
 ) -> list[list[int]]:
     """Node numbers of each face of a surface, or of the faces whose nodes all are in a node set."""
-    card = next((c for c in deck.of("SURFACE") if c.value("NAME") == name.upper()), None)
+    card = next((c for c in deck.of("SURFACE") if c.value("NAME") == capitals(name)), None)
     found: list[list[int]] = []
     if card is not None:
         for line in card.lines:
@@ -125,8 +126,8 @@ def _face(
             corners = BRICK_FACES[FACE_NAMES.index(face.upper())]
             own = [e for e in sets.elements_of(label) if e in elements]
             found += [[elements[e][k] for k in corners] for e in own]
-    elif name.upper() in sets.node_sets:
-        kept = sets.node_sets[name.upper()]
+    elif capitals(name) in sets.node_sets:
+        kept = sets.node_sets[capitals(name)]
         for nodes in elements.values():
             faces = [[nodes[k] for k in corners] for corners in BRICK_FACES]
             found += [face for face in faces if len(set(face)) > 2 and kept.issuperset(face)]
