@@ -31,6 +31,7 @@ set(sources
   reduced/reduced_scheme.f90
   reduced/reduced_shapes.f90
   reduced/shape_modes.f90
+  reduced/shape_orthogonality.f90
   solids/active_unknowns.f90
   solids/block_answers.f90
   solids/changing_elements.f90

@@ -7,15 +7,14 @@
 !> where rock has no mass, a shape of little mass would be large there, if its mass were one.
 module reduced_shapes
   use column_products, only: multiply_columns
-  use dense_products, only: subtract_times, transposed_times
   use errors, only: error_type
-  use global_vectors, only: dot
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
   use kinds, only: rk
   use problem_definition, only: problem
   use reduced_ports, only: static_solvers
   use shape_modes, only: find_shape_modes
+  use shape_orthogonality, only: orthonormalise
   use step_system, only: dam_system
   implicit none
   private
@@ -25,9 +24,6 @@ module reduced_shapes
   !> dam with closed joints. The larger the shift, the less round-off is in the responses of blocks
   !> which only joints hold.
   real(rk), parameter :: largest_shift = 1.0e4_rk
-  !> A shape whose part beyond the others is less than this of its own size is left out, and one
-  !> that loses half of this part when it is made orthogonal again: the part is round-off.
-  real(rk), parameter :: least_part = 1.0e-9_rk, least_rest = 0.5_rk
 
 contains
 
@@ -112,55 +108,4 @@ contains
       call multiply_columns(system%mass_pattern, system%mass_entries, block(:, :num_taken), force)
     end do
   end subroutine add_krylov
-
-  !> Makes the shapes of a block orthogonal to the others and to each other with the stiffness,
-  !> twice against round-off, and their size one. Shapes without a part beyond the others are taken
-  !> out.
-  subroutine orthonormalise(system, measure, others, block)
-    type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: measure(:) !< values of the stiffness
-    real(rk), intent(in), contiguous :: others(:, :) !< (num_free, shapes)
-    real(rk), allocatable, intent(inout) :: block(:, :) !< (num_free, shapes)
-    real(rk), allocatable :: product(:, :) ! stiffness times the block
-    real(rk) :: length(size(block, 2))
-    integer :: pass, k
-    allocate (product, mold=block)
-    call multiply_columns(system%matrix, measure, block, product)
-    do k = 1, size(length)
-      length(k) = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
-      if (.not. length(k) > 0.0_rk) cycle
-      block(:, k) = block(:, k)/length(k)
-      product(:, k) = product(:, k)/length(k)
-    end do
-    do pass = 1, 2
-      call subtract_times(others, transposed_times(others, product), block)
-      call multiply_columns(system%matrix, measure, block, product)
-      call separate(merge(least_part, least_rest, pass == 1), block, product)
-    end do
-  end subroutine orthonormalise
-
-  !> Makes the shapes of a block orthogonal to each other and their size one. Those that are not
-  !> longer than `least` then are taken out.
-  subroutine separate(least, block, product)
-    real(rk), intent(in) :: least
-    real(rk), allocatable, intent(inout) :: block(:, :), product(:, :) !< and its forces
-    real(rk) :: length
-    integer :: k, j, n
-    n = 0
-    do k = 1, size(block, 2)
-      do j = 1, n
-        associate (part => dot(product(:, j), block(:, k)))
-          block(:, k) = block(:, k) - part*block(:, j)
-          product(:, k) = product(:, k) - part*product(:, j)
-        end associate
-      end do
-      length = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
-      if (.not. length > least) cycle
-      n = n + 1
-      block(:, n) = block(:, k)/length
-      product(:, n) = product(:, k)/length
-    end do
-    block = block(:, :n)
-    product = product(:, :n)
-  end subroutine separate
 end module reduced_shapes
