@@ -7,6 +7,7 @@ set(sources
   element_blocks.f90
   guest_list.f90
   inelastic_blocks.f90
+  massless_solids.f90
   parts/element_parts.f90
   parts/matrix_rows.f90
   parts/undivided_effects.f90

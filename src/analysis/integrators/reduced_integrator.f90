@@ -13,13 +13,13 @@ module reduced_integrator
   use integrator_type, only: integrator
   use joint_forces, only: gather_tractions
   use kinds, only: rk
+  use massless_solids, only: has_massless
   use problem_definition, only: problem
   use reduced_basis, only: build_basis, reduced_model
   use reduced_energy, only: add_reduced_work
   use reduced_estimate, only: estimate_error
   use reduced_fields, only: expand_motion
   use reduced_increment, only: load_factors, modal_forces, take_reduced_increment
-  use reduced_massless, only: has_massless
   use reduced_nodes, only: find_followed, followed_nodes
   use reduced_ports, only: static_solvers
   use reduced_scheme, only: reduced_matrices

@@ -10,6 +10,7 @@ module start_acceleration
   use step_system, only: dam_system
   use initial_acceleration, only: find_acceleration
   use massless_acceleration, only: find_constrained_acceleration, find_weight
+  use massless_solids, only: has_massless
   implicit none
   private
   public :: find_start
@@ -37,7 +38,10 @@ contains
     real(rk), allocatable :: values(:)
     logical :: is_definite, leaves_open
     integer :: trial, worst
-    call find_acceleration(system%matrix, system%mass, r, a, is_definite)
+    is_definite = .false.
+    ! M of solids without mass may have a diagonal of masses, of joints and ties, and be singular.
+    if (.not. has_massless(model)) call find_acceleration(system%matrix, system%mass, r, a, &
+                                                          is_definite)
     if (is_definite) return
     if (is_balanced(system%matrix%num_free, load, r)) then
       a = 0.0_rk

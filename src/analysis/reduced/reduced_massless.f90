@@ -10,13 +10,12 @@ module reduced_massless
   use joint_rows, only: num_rows
   use kinds, only: rk
   use linear_solver, only: equation_solver
-  use problem_definition, only: problem
   use reduced_ports, only: find_port_compliance, forces_of, sample_forces, solve_blocks, &
                            static_solvers
   use step_system, only: dam_system
   implicit none
   private
-  public :: massless_part, find_massless, has_massless
+  public :: massless_part, find_massless
 
   type :: massless_part
     logical :: is_there = .false.
@@ -34,20 +33,6 @@ module reduced_massless
   integer, parameter :: num_samples = 8
 
 contains
-
-  !> Whether solids have no mass.
-  pure logical function has_massless(model)
-    type(problem), intent(in) :: model
-    integer :: e
-    has_massless = .false.
-    do e = 1, size(model%mesh%material_of_element)
-      associate (material => model%mesh%material_of_element(e))
-        if (material < 1) cycle
-        has_massless = .not. model%materials(material)%density > 0.0_rk
-      end associate
-      if (has_massless) return
-    end do
-  end function has_massless
 
   !> Finds the response, and makes massless solids follow the others in the shapes: X describes
   !> what they do beyond. The solver `held` holds the factor afterwards; it is dropped where forces
