@@ -147,6 +147,7 @@ contains
     end associate
     allocate (model%test_origin(0), model%laws(0), model%joints(0))
     allocate (model%material_requests(0), model%procedure_card(0), model%ties(0))
+    allocate (model%kept_supports(0))
     allocate (model%interfaces(0), model%interactions(0), model%clearances(0))
   end subroutine open_draft
 
