@@ -68,6 +68,9 @@ KINDS = {
     "inverted_solid_at_a_joint": "bad-element",
     "warning_increments_miss_the_peak": "motion-record",
     "joint_not_coincident": "faces-apart",
+    "warning_supports_of_modes": "supports-of-modes",
+    "warning_op_new_of_one_keyword": "other-loads-stay",
+    "warning_tie_of_one_held_node": "support-on-tie",
 }
 
 

@@ -53,6 +53,7 @@ set(sources
   joints/keywords_interface.f90
   joints/keywords_joint.f90
   joints/keywords_tie.f90
+  joints/tie_supports.f90
   keyword_catalogue.f90
   loads/dload_labels.f90
   loads/finish_uplift.f90

@@ -10,6 +10,7 @@ contains
   !> Adds all pages of this module, in the order in which their signs are looked for.
   subroutine add_pages_of_models(list)
     type(page_list), intent(inout) :: list
+    call pages_from_kept_supports(list)
     call pages_from_no_effect(list)
     call pages_from_replaced_weight(list)
     call pages_from_loose_block(list)
@@ -18,6 +19,37 @@ contains
     call pages_from_faces_apart(list)
     call pages_from_acts_twice(list)
   end subroutine add_pages_of_models
+
+  subroutine pages_from_kept_supports(list)
+    type(page_list), intent(inout) :: list
+    call list%add('supports-of-modes', &
+                  'supports of this *FREQUENCY step stay', &
+                  '*BOUNDARY in a *FREQUENCY step changes the supports of this step and of all '// &
+                  'steps after it, as in CalculiX. In Abaqus such a step is a perturbation, '// &
+                  'whose supports end with it.', &
+                  'Give all supports again with OP=NEW in the next *STATIC or *DYNAMIC step, '// &
+                  'or find the frequencies in a deck of their own.', &
+                  '*BOUNDARY; CREST, 1 in the *FREQUENCY step', &
+                  '*BOUNDARY, OP=NEW; BASE, 1, 3 in the step after it')
+    call list%add('other-loads-stay', &
+                  'clears the loads of this keyword alone', &
+                  'OP=NEW of *DLOAD clears the loads of *DLOAD, that of *DSLOAD those of '// &
+                  '*DSLOAD, as in Abaqus. CalculiX clears both.', &
+                  'Give OP=NEW with both keywords where all these loads end, and the weight '// &
+                  'again.', &
+                  '*DLOAD, OP=NEW where a *DSLOAD of an earlier step must end too', &
+                  '*DLOAD, OP=NEW and *DSLOAD, OP=NEW')
+    call list%add('support-on-tie', &
+                  'not tied in direction', &
+                  'A tie makes slave nodes follow the master surface, the same nodes in all '// &
+                  'steps. A node that a support of some steps holds does not follow in this '// &
+                  'direction: it is free of the tie in the other steps too, and the surfaces '// &
+                  'can part there.', &
+                  'Exchange slave and master, so that the support holds nodes of the master; '// &
+                  'or let the support act in all steps.', &
+                  'a slave node held from step 2 on', &
+                  'the surface with the held nodes as master')
+  end subroutine pages_from_kept_supports
 
   subroutine pages_from_replaced_weight(list)
     type(page_list), intent(inout) :: list

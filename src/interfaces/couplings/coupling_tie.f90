@@ -36,23 +36,23 @@ contains
   end function describe
 
   !> The rows of a tie. Directions with multipliers at the same nodes share rows.
-  subroutine build_tie_rows(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
+  subroutine build_tie_rows(x, slave, master, segments, is_fixed, earlier, tie, is_bare)
     real(rk), intent(in) :: x(:, :) !< (3, nodes) [m]
     type(facet_set), intent(in) :: slave, master
     type(segment_set), intent(in) :: segments
     logical, intent(in) :: is_fixed(:, :) !< (3, nodes) by a support in any step
     type(node_tie), intent(in) :: earlier(:) !< earlier ties of the deck
     type(node_tie), intent(inout) :: tie !< the caller sets its name
-    logical, allocatable, intent(out) :: is_idle(:, :) !< (3, slave facets) no corner has one
+    logical, allocatable, intent(out) :: is_bare(:) !< (slave facets) lies on no master facet
     type(mortar_rows) :: rows
     logical :: is_bound(size(x, 2), 3), together(3)
-    integer :: i, j, f
+    integer :: i, j
     tie%node = [integer ::]
     tie%first = [1]
     tie%item = [integer ::]
     tie%weight = [real(rk) ::]
     allocate (tie%is_tied(3, 0))
-    allocate (is_idle(3, size(slave%node, 2)), source=.false.)
+    allocate (is_bare(size(slave%node, 2)), source=.true.)
     do i = 1, 3
       call find_bound(i, slave, master, is_fixed(i, :), earlier, is_bound(:, i))
     end do
@@ -63,10 +63,7 @@ contains
       if (any(together(:i - 1))) cycle
       call project(x, slave, master, segments, is_bound(:, i), rows, merges_planes=.true.)
       call add_rows(rows, together, tie)
-      do f = 1, size(slave%node, 2)
-        if (rows%is_bare(f)) cycle
-        is_idle(:, f) = is_idle(:, f) .or. (together .and. all(is_bound(slave%node(:, f), i)))
-      end do
+      is_bare = is_bare .and. rows%is_bare
     end do
   end subroutine build_tie_rows
 

@@ -6,7 +6,7 @@ module check_steps
   use guest_list, only: supports_of_step
   use load_base_motion, only: base_motion
   use keywords_output, only: fields_of_envelope
-  use model_draft, only: draft
+  use model_draft, only: draft, kept_support
   use step_plan, only: field_name_length
   use write_text, only: as_text
   implicit none
@@ -25,6 +25,7 @@ contains
     step = steps_of_cards(model%cards)
     call warn_of_names(model, step, faults)
     call warn_of_loads_on_modes(model, step, faults)
+    call warn_of_kept_supports(model, step, faults)
     call warn_of_reservoirs(model, step, faults)
     call warn_of_envelopes(model, step, faults)
     call warn_of_initial_displacements(model, faults)
@@ -70,6 +71,59 @@ contains
       call model%cards(i)%warn(faults, 'has no effect in a step *FREQUENCY'//later)
     end do
   end subroutine warn_of_loads_on_modes
+
+  !> Supports of a *FREQUENCY step stay in the steps after it; in Abaqus they end with the step.
+  !> OP=NEW in the next step that moves the model gives all its supports.
+  subroutine warn_of_kept_supports(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: number
+    integer :: i, k
+    do k = 1, size(model%kept_supports)
+      associate (kept => model%kept_supports(k))
+        if (gives_all_supports(model, step, kept%step)) cycle
+        i = card_of_kept(model, step, kept)
+        if (i == 0) cycle
+        number = as_text(kept%step)
+        call model%cards(i)%warn( &
+          faults, 'the supports of this *FREQUENCY step stay: node '// &
+          as_text(model%problem%mesh%node_id(kept%node))//' is '// &
+          trim(merge('held    ', 'not held', kept%is_held))//' in direction '// &
+          as_text(kept%dof)//' in step '//number//' (in Abaqus they end with the *FREQUENCY '// &
+          'step)', '*BOUNDARY, OP=NEW with all supports in step '//number//', unless they '// &
+          'are meant to stay')
+      end associate
+    end do
+  end subroutine warn_of_kept_supports
+
+  !> Whether a step gives all its supports.
+  pure logical function gives_all_supports(model, step, s)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    integer, intent(in) :: s !< step
+    integer :: i
+    gives_all_supports = .false.
+    do i = 1, size(step)
+      if (step(i) /= s .or. .not. is_keyword(model%cards(i), 'BOUNDARY')) cycle
+      if (model%cards(i)%word('OP') == 'NEW') gives_all_supports = .true.
+    end do
+  end function gives_all_supports
+
+  !> The last *BOUNDARY of the *FREQUENCY steps before a step that keeps a support; 0 for none.
+  pure integer function card_of_kept(model, step, kept) result(found)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card
+    type(kept_support), intent(in) :: kept
+    integer :: s
+    do s = kept%step - 1, 1, -1
+      if (.not. model%problem%steps(s)%procedure%finds_modes) exit
+      do found = size(step), 1, -1
+        if (step(found) == s .and. is_keyword(model%cards(found), 'BOUNDARY')) return
+      end do
+    end do
+    found = 0
+  end function card_of_kept
 
   !> One reservoir twice in a step: both press.
   subroutine warn_of_reservoirs(model, step, faults)

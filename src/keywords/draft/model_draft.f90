@@ -25,7 +25,7 @@ module model_draft
   public :: draft, add_guest, add_law, add_load, origin
   public :: section_request, law_request, joint_request, tie_request, interface_request
   public :: interaction_request, law_of_joint
-  public :: moved_direction
+  public :: kept_support, moved_direction
   public :: material_request, find_material_request, has_request
 
   !> Place of a definition: a card of the deck and one of its data lines (0: the keyword line).
@@ -94,6 +94,14 @@ module model_draft
     type(origin) :: spot
   end type interface_request
 
+  !> A support of a *FREQUENCY step that the next *STATIC or *DYNAMIC step keeps.
+  type :: kept_support
+    integer :: step = 0 !< the *STATIC or *DYNAMIC step
+    integer :: node = 0 !< position
+    integer :: dof = 0 !< 1..3
+    logical :: is_held = .true. !< else the *FREQUENCY step removed the support
+  end type kept_support
+
   !> *BOUNDARY, TYPE=ACCELERATION in one direction.
   type :: moved_direction
     logical, allocatable :: moves(:) !< (nodes) has the acceleration
@@ -149,6 +157,8 @@ module model_draft
     integer :: num_loads = 0 !< in use of model%loads, which grows by doubling
     type(load_book) :: active_loads
     type(dof_table) :: supports, point_forces
+    logical, allocatable :: last_held(:, :) !< (3, nodes) after the last step that moves the model
+    type(kept_support), allocatable :: kept_supports(:) !< one for each step that keeps some
     ! The card being read.
     integer :: current = 0 !< its position in `cards`
     logical :: is_right = .true. !< it agrees with its specification

@@ -3,7 +3,6 @@ module finish_ties
   use coupling_tie, only: build_tie_rows, exact_tie
   use cover_checks, only: keep_cover
   use dam_mesh, only: node_tie
-  use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use errors, only: error_type
   use facet_segments, only: find_segments
@@ -17,6 +16,7 @@ module finish_ties
   use surface_facets, only: list_surface_facets
   use surface_segments, only: facet_set, segment_set, surface_cover
   use tie_motion, only: follow_ties
+  use tie_supports, only: collect_supports, report_releases, support_steps
   use write_text, only: as_text
   implicit none
   private
@@ -37,18 +37,18 @@ contains
   subroutine complete_ties(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    logical, allocatable :: is_fixed(:, :), is_always(:, :)
+    type(support_steps) :: supports
     type(node_tie), allocatable :: ties(:)
     integer, allocatable :: adjusting(:)
     integer :: i, k, num_before, num_guests, used
     if (size(model%ties) == 0) return
     allocate (adjusting(0), ties(size(model%ties)))
     used = 0
-    call collect_supports(model, is_fixed, is_always)
+    call collect_supports(model, supports)
     do i = 1, size(model%ties)
       num_before = used
       num_guests = size(model%problem%guests)
-      call build_tie(model%ties(i), is_fixed, is_always, ties(:used), model, faults)
+      call build_tie(model%ties(i), supports, ties(:used), model, faults)
       if (faults%has_errors()) return
       do k = num_guests + 1, size(model%problem%guests) ! springs add none
         call model%problem%guests(k)%item%add_ties(ties, used)
@@ -72,33 +72,10 @@ contains
     call model%cards(model%ties(1)%spot%card)%fault(faults, 'the ties: '//error%message)
   end subroutine adjust_nodes
 
-  !> Collects the supports of all steps: a node has the same multipliers in all steps, so that a
-  !> state continues from step to step.
-  subroutine collect_supports(model, is_fixed, is_always)
-    type(draft), intent(in) :: model
-    logical, allocatable, intent(out) :: is_fixed(:, :) !< (3, nodes) in any step
-    logical, allocatable, intent(out) :: is_always(:, :) !< (3, nodes) in all steps
-    logical, allocatable :: is_now(:, :)
-    integer :: s, k
-    allocate (is_fixed(num_directions, model%problem%mesh%num_nodes), source=.false.)
-    allocate (is_always(num_directions, model%problem%mesh%num_nodes), source=.true.)
-    allocate (is_now(num_directions, model%problem%mesh%num_nodes))
-    do s = 1, size(model%problem%steps)
-      is_now = .false.
-      associate (fixities => model%problem%steps(s)%fixities)
-        do k = 1, size(fixities)
-          is_now(fixities(k)%dof, fixities(k)%node) = .true.
-        end do
-      end associate
-      is_fixed = is_fixed .or. is_now
-      is_always = is_always .and. is_now
-    end do
-  end subroutine collect_supports
-
   !> Builds the tie of one pair of surfaces.
-  subroutine build_tie(request, is_fixed, is_always, earlier, model, faults)
+  subroutine build_tie(request, supports, earlier, model, faults)
     type(tie_request), intent(in) :: request
-    logical, intent(in) :: is_fixed(:, :), is_always(:, :) !< (3, nodes) by supports
+    type(support_steps), intent(in) :: supports
     type(node_tie), intent(in) :: earlier(:) !< of the requests before
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -108,7 +85,7 @@ contains
     class(guest), allocatable :: item
     type(exact_tie) :: tie
     type(coupling), allocatable :: springs
-    logical, allocatable :: is_idle(:, :)
+    logical, allocatable :: is_bare(:)
     associate (problem => model%problem, place => model%cards(request%spot%card))
       call list_surface_facets(problem%mesh, problem%surfaces(request%slave), slave)
       call list_surface_facets(problem%mesh, problem%surfaces(request%master), master)
@@ -134,8 +111,8 @@ contains
       tie%name = request%name
       tie%kind = 'tie'
       tie%rows%name = request%name
-      call build_tie_rows(problem%mesh%x, slave, master, segments, is_fixed, earlier, tie%rows, &
-                          is_idle)
+      call build_tie_rows(problem%mesh%x, slave, master, segments, supports%first > 0, earlier, &
+                          tie%rows, is_bare)
       if (size(tie%rows%node) == 0) then
         call place%fault_at(faults, request%spot%line, 1, 'the tie constrains no node: '// &
                             'supports or earlier ties hold every node of the slave surface', &
@@ -147,37 +124,11 @@ contains
                         as_text(size(tie%rows%item)/size(tie%rows%node))//' others in the '// &
                         'mean, which makes large and dense equations', 'the finer surface as slave')
       end if
-      call report_idle(place, slave%node, is_idle, is_always, model, faults)
+      call report_releases(place, slave, master, is_bare, supports, earlier, model, faults)
     end associate
     allocate (item, source=tie)
     call add_guest(model, item)
   end subroutine build_tie
-
-  !> Reports facets that transmit no force because supports of some steps or earlier ties hold all
-  !> their corners. Supports that act in all steps carry the force.
-  subroutine report_idle(place, corner, is_idle, is_always, model, faults)
-    type(card), intent(in) :: place
-    integer, intent(in) :: corner(:, :) !< (4, slave facets)
-    logical, intent(in) :: is_idle(:, :) !< (3, slave facets)
-    logical, intent(in) :: is_always(:, :) !< (3, nodes)
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    integer :: f, i, num_idle, worst
-    num_idle = 0
-    worst = 0
-    do f = 1, size(corner, 2)
-      if (.not. any([(is_idle(i, f) .and. .not. all(is_always(i, corner(:, f))), i=1, 3)])) cycle
-      num_idle = num_idle + 1
-      if (worst == 0) worst = f
-    end do
-    if (num_idle == 0) return
-    call place%warn(faults, &
-                    as_text(num_idle)//' of '//as_text(size(corner, 2))//' slave facets '// &
-                    'transmit no force: supports of some step or earlier ties hold all their '// &
-                    'corners, the first at node '// &
-                    as_text(model%problem%mesh%node_id(corner(1, worst))), &
-                    'more facets across, or slave and master exchanged')
-  end subroutine report_idle
 
   !> Reports initial values of tied nodes that contradict the ties.
   subroutine check_initial_values(is_velocity, model, faults)

@@ -3,7 +3,7 @@ module finish_step
   use keywords_temperature, only: keep_heats
   use kinds, only: rk
   use load_point, only: point_load
-  use model_draft, only: draft, add_load
+  use model_draft, only: add_load, draft, kept_support
   use node_dofs, only: num_directions
   use step_plan, only: output_rhythm, step, step_fixity, step_load
   use write_text, only: as_text
@@ -41,6 +41,7 @@ contains
     model%step_origin = model%here(0)
     model%is_in_step = .true.
     model%supports%is_new = .false.
+    if (num == 0) model%last_held = model%supports%is_set
     model%has_new_nodal = .false.
     model%has_new_elemental = .false.
     model%rhythm = output_rhythm()
@@ -56,6 +57,7 @@ contains
     call set_frequencies(model)
     call collect_point_forces(model)
     call collect_fixities(model)
+    call note_kept_supports(model)
     model%now%loads = [model%now%loads, model%active_loads%loads_of_step()]
     is_perturbation = model%now%procedure%finds_modes
     end_time = model%total_time + model%now%duration
@@ -109,6 +111,22 @@ contains
       end do
     end do
   end subroutine collect_fixities
+
+  !> Notes a support that *FREQUENCY steps before this step have changed and its cards do not give.
+  subroutine note_kept_supports(model)
+    type(draft), intent(inout) :: model
+    integer :: found(2)
+    if (model%now%procedure%finds_modes) return
+    associate (table => model%supports)
+      found = findloc((table%is_set .neqv. model%last_held) .and. .not. table%is_new, .true.)
+      if (found(1) > 0) then
+        model%kept_supports = [model%kept_supports, &
+                               kept_support(model%num_steps + 1, found(2), found(1), &
+                                            table%is_set(found(1), found(2)))]
+      end if
+      model%last_held = table%is_set
+    end associate
+  end subroutine note_kept_supports
 
   !> Point forces without amplitude become two loads of the step: the initial forces, with a factor
   !> that falls to 0, and the final forces, with a factor that rises to 1. Forces with an amplitude

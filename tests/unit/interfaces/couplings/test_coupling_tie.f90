@@ -43,9 +43,9 @@ contains
     type(node_tie), intent(out) :: tie
     type(segment_set) :: segments
     type(surface_cover) :: cover
-    logical, allocatable :: is_idle(:, :)
+    logical, allocatable :: is_bare(:)
     call find_segments(x, slave, master, segments, cover)
-    call build_tie_rows(x, slave, master, segments, is_fixed, earlier, tie, is_idle)
+    call build_tie_rows(x, slave, master, segments, is_fixed, earlier, tie, is_bare)
   end subroutine tie_faces
 
   !> How often each node follows in each direction.
