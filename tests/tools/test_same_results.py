@@ -117,7 +117,8 @@ def test_kept_results_are_not_computed_again(tmp_path, capsys):
     assert "kept and kept" in capsys.readouterr().out
     deck.with_suffix(".for").write_text("      SUBROUTINE UMAT\n      END\n")  # now with a UMAT
     assert same_results.main([str(before), str(after), str(deck), *options]) == 0
-    (line,) = (line for line in capsys.readouterr().out.splitlines() if same_results.name_of(deck) in line)
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (line for line in lines if same_results.name_of(deck) in line)
     assert not line.endswith("kept and kept")
 
 
