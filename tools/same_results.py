@@ -23,8 +23,9 @@ from pathlib import Path
 import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
 from keyway.batch.cases import has_step
+from keyway.deck.deck_file import named_files
 from keyway_tools.command import command
-from keyway_tools.deck_runs import digest_of, files_of
+from keyway_tools.input_digest import digest_of
 from keyway_tools.option_types import count, count_from_zero, from_zero
 from keyway_tools.written_values import Difference, compare_written
 
@@ -79,7 +80,8 @@ def find_decks(more: list[Path], only: str) -> dict[str, Path]:
     chosen = {n: p for n, p in decks.items() if only in n and (has_step(p) or tests_materials(p))}
     if not chosen:
         raise ValueError("no decks to run")
-    size = {n: sum(f.stat().st_size for f in files_of(p) if f.is_file()) for n, p in chosen.items()}
+    size = {n: sum(f.stat().st_size for f in named_files(p) if f.is_file())
+            for n, p in chosen.items()}  # fmt: skip
     return {name: chosen[name] for name in sorted(chosen, key=lambda n: -size[n])}
 
 
@@ -106,7 +108,7 @@ def options_of(deck: Path) -> list[str]:
 
 def run(program: Path, deck: Path, threads: str, folder: Path) -> tuple[Path, float]:
     """The folder of the results, and the seconds that the run took (0 for results kept)."""
-    text = digest_of(deck, sha256(program)) + threads
+    text = digest_of(deck, sha256(program), options_of(deck)) + threads
     final = folder / f"{name_of(deck)}_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
     if final.exists():
         return final, 0.0

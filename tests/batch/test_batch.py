@@ -81,6 +81,57 @@ def test_finished_deck_is_not_run_again(place):
     assert len(calls(place)) == 4
 
 
+AMPLITUDES = {
+    "continued": "*AMPLITUDE, NAME=M, FORMAT=VALUES,\n INPUT=my rec.txt\n",
+    "blanks in the name": "*AMPLITUDE, NAME=M, INPUT = my rec.txt\n",
+    "single quotes": "*AMPLITUDE, INPUT='my rec.txt', NAME=M\n",
+    "below a file": "*INCLUDE,\nINPUT=part.inc\n",
+}
+
+
+@pytest.mark.parametrize("card", AMPLITUDES.values(), ids=AMPLITUDES)
+def test_a_deck_runs_again_where_a_file_of_it_has_changed(place, card):
+    """The files are those of keyway.deck: a pattern of its own kept results of another record."""
+    (place / "part.inc").write_text("*Amplitude, name=M,\n** remark\n input=my rec.txt\n")
+    (place / "my rec.txt").write_text("0.\n1.\n")
+    dam = deck(place, "dam", "ok 1", card)
+    for _ in range(2):
+        assert run(dam) == 0
+    assert len(calls(place)) == 1
+    (place / "my rec.txt").write_text("0.\n2.\n")
+    assert run(dam) == 0
+    assert len(calls(place)) == 2
+
+
+UMAT = {
+    "law.for": "      SUBROUTINE UMAT\n      include 'law.inc'\n      END\n",
+    "law.inc": '#include "deep/more.h"\n',
+    "deep/more.h": "      INCLUDE 'far.inc'\n",
+    "far/far.inc": "      X = 1.0\n",
+}
+
+
+@pytest.mark.parametrize("name", UMAT)
+def test_a_deck_runs_again_where_its_umat_has_changed(place, name):
+    """Also where a file that the source includes has; the library is written by the run itself."""
+    for file, text in UMAT.items():
+        (place / file).parent.mkdir(exist_ok=True)
+        (place / file).write_text(text)
+    dam = deck(place, "dam", "ok 1")
+    options = ["--umat", "law.for", "--umat-flags", "-O1 -Ifar", "--umat-library", "law.so"]
+
+    def num_calls() -> int:
+        assert batch.main([dam, "--program", "keyway", "--", *options]) == 0
+        return len(calls(place))
+
+    assert num_calls() == 1
+    (place / "law.so").write_text("new")
+    assert num_calls() == 1
+    (place / name).write_text(UMAT[name] + "! changed\n")
+    assert num_calls() == 2
+    assert num_calls() == 2
+
+
 def test_failed_deck_is_run_again(place):
     dam = deck(place, "dam", "fail 1")
     assert run(dam) == 1

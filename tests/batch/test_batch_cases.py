@@ -54,6 +54,16 @@ def test_a_column_names_the_cases(place):
     assert [case.deck.name for case in found] == ["low.inp", "high.inp"]
 
 
+def test_a_template_in_latin1(place):
+    """Its cases are read as the template is: names and files keep their letters."""
+    text = TEMPLATE.replace("A block", "Stärke").replace("records/", "Stöße/")
+    (place / "dam.inp").write_bytes(text.encode("latin-1"))
+    (case,) = cases(place, "FRICTION,RECORD\n0.6,Süd\n")
+    text = case.deck.read_text(encoding="utf-8")
+    assert "** Stärke, friction 0.6" in text
+    assert "INPUT=../../Stöße/Süd.txt\n" in text
+
+
 @pytest.mark.parametrize(
     ("table", "fault"),
     [

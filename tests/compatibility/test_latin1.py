@@ -7,7 +7,7 @@ import json
 import h5py
 import pytest
 from harness import ROOT, Run
-from keyway_tools.deck_runs import files_of
+from keyway.deck.deck_file import named_files
 
 SURFACES = (ROOT / "tests/errors/base/surfaces.inp").read_text()
 # Every kind of name; two names each that differ by an umlaut alone.
@@ -137,8 +137,8 @@ def test_files_with_names_in_latin1_are_found(keyway):
         )
     keyway(path)
     # Tools that follow INPUT= find them too: a batch that did not would keep an old result.
-    assert len(files_of(path)) == 1 + len(FILES)
-    assert all(file.exists() for file in files_of(path))
+    assert len(named_files(path)) == 1 + len(FILES)
+    assert all(file.exists() for file in named_files(path))
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])

@@ -51,6 +51,23 @@ def test_sets(deck):
         deck.add_element_set("NONE", [])
 
 
+def test_data_below_an_included_file_go_on_with_the_card_above(tmp_path):
+    """As the program reads them; they were lost from the sets."""
+    (tmp_path / "nodes.txt").write_text("1, 0., 0., 0.\n")
+    text = "*NODE, NSET=ALL\n*INCLUDE, INPUT=nodes.txt\n** more\n2, 0., 0., 1.\n*STEP\n"
+    deck = Deck.from_text(text, tmp_path / "dam.inp")
+    assert deck.node_set("ALL").tolist() == [1, 2]
+    assert deck.text() == text
+
+
+def test_a_range_that_is_none_is_named(tmp_path):
+    deck = Deck.from_text("*NSET, NSET=A, GENERATE\n9, 1, -1\n", tmp_path / "dam.inp")
+    with pytest.raises(
+        DeckError, match=r"dam.inp:1: \*NSET: found '9, 1, -1'; expected first, last"
+    ):
+        deck.node_set("A")
+
+
 def test_elsewhere_the_other_files_are_named_where_they_are(deck, tmp_path):
     target = tmp_path / "second/case/dam.inp"
     assert deck.write(target) == [target]

@@ -35,10 +35,35 @@ def read(tmp_path, text, mesh=MESH):
         "*NSET, NSET=BASE, GENERATE\n101, 102\n103, 103, 1\n",
         "*NSET, NSET=BASE, GENERATE\n101, 103, 1\n",
         '*Nset, nset="BASE", internal\n101, 102, 103\n',
+        "*INCLUDE, INPUT=base.inc\n103\n",
     ],
 )
 def test_a_set_of_nodes_is_whole(tmp_path, text):
+    (tmp_path / "base.inc").write_text("*NSET, NSET=BASE\n101, 102\n")
     assert list(read(tmp_path, text).node_groups["BASE"]) == [0, 1, 2]
+
+
+def test_a_set_of_the_nodes_of_elements(tmp_path):
+    """The corners of the first and the last cube."""
+    text = "*ELSET, ELSET=Ends\n10, 16\n*NSET, NSET=CORNERS, ELSET=ENDS\n*NSET, NSET=CORNERS\n101\n"
+    assert list(read(tmp_path, text).node_groups["CORNERS"]) == list(range(16))
+    text = "*NSET, NSET=CORNERS, ELSET=ALL\n"
+    assert list(read(tmp_path, text).node_groups["CORNERS"]) == list(range(16))
+    text = "*ELSET, ELSET=ONE\n10\n*NSET, NSET=CORNERS, ELSET=ONE\n"
+    assert list(read(tmp_path, text).node_groups["CORNERS"]) == [0, 1, 4, 5, 8, 9, 12, 13]
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        ("*NSET, NSET=Empty\n", "NSET 'Empty' has no members; left out"),
+        ("*ELSET, ELSET=E\n** remark\n", "ELSET 'E' has no members; left out"),
+        ("*NODE, NSET=N\n", "NSET 'N' has no members; left out"),
+        ("*NSET, NSET=FUß\n101\n", "group 'FUß' is FUSS in the deck"),
+    ],
+)
+def test_what_becomes_of_a_set_is_noted(tmp_path, text, note):
+    assert note in read(tmp_path, text).notes
 
 
 @pytest.mark.parametrize(
@@ -96,6 +121,11 @@ def test_a_set_of_nodes_with_another_name_in_the_deck_is_noted(tmp_path, capsys)
         ("*NSET\n101\n", r"m.inp:25: \*NSET: no name; expected NSET=name"),
         ("*NSET, NSET=A\n101, 900\n", "node 900 of set A is not there"),
         ("*ELSET, ELSET=A, GENERATE\n10, 16, 1\n", "element 11 of set A is not there"),
+        ("*NSET, NSET=A, GENERATE\n103, 101, -1\n", "m.inp:26: found '103, 101, -1'; expected fir"),
+        ("*NSET, NSET=A, GENERATE\n103, 101\n", "integers > 0 with first <= last"),
+        ("*NSET, NSET=A, GENERATE\n101, 103, 0\n", "integers > 0 with first <= last"),
+        ("*ELSET, ELSET=A, GENERATE\n10\n", "m.inp:26: found '10'; expected first, last, step"),
+        ("*NSET, NSET=A, ELSET=B\n", r"m.inp:25: \*NSET: found 'B'; expected the name of a set of"),
         ("*NODE\n101, 1., 2., 3.\n", "m.inp:26: node 101 is there twice"),
         ("*NODE\n201, 1., 2 m\n", "m.inp:26: found '201, 1., 2 m'; expected numbers"),
         ("*ELEMENT, TYPE=S4\n10, 101, 102, 112, 111\n", "m.inp:26: element 10 is there twice"),

@@ -115,6 +115,11 @@ def test_kept_results_are_not_computed_again(tmp_path, capsys):
     for _ in range(2):
         assert same_results.main([str(before), str(after), str(deck), *options]) == 0
     assert "kept and kept" in capsys.readouterr().out
+    deck.with_suffix(".for").write_text("      SUBROUTINE UMAT\n      END\n")  # now with a UMAT
+    assert same_results.main([str(before), str(after), str(deck), *options]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (line for line in lines if same_results.name_of(deck) in line)
+    assert not line.endswith("kept and kept")
 
 
 def test_a_missing_program_is_a_fault_of_usage(tmp_path, capsys):

@@ -33,23 +33,6 @@ def run_deck(program: Path, deck: Deck, folder: Path, name: str) -> Results:
     return Results(folder / name, name)
 
 
-def test_reader_takes_continuations_quotes_and_includes(tmp_path):
-    (tmp_path / "in").mkdir()
-    (tmp_path / "in/mesh.inp").write_text("*node, nset = All\n1, 0., 0.\n** remark\n 2,1.,0.,0.\n")
-    text = '*Include, input="in/mesh.inp"\n*RESERVOIR, NAME=LAKE,\n  LEVEL=5., ADDED MASS=NONE\n'
-    (tmp_path / "a.inp").write_text(text + "*amplitude, name=A, input=x.txt\n*STATIC\n1., 1.\n")
-    deck = read_deck(tmp_path / "a.inp")
-    node, reservoir, amplitude, static = deck.cards
-    assert (node.keyword, node.value("NSET"), node.lines) == (
-        "NODE", "ALL", ["1, 0., 0.", "2,1.,0.,0."],
-    )  # fmt: skip
-    assert reservoir.parameters == {"NAME": "LAKE", "LEVEL": "5.", "ADDED MASS": "NONE"}
-    assert amplitude.parameters["INPUT"] == f'"{tmp_path / "x.txt"}"'
-    assert [number_of(item) for item in static.lines[0].split(",")] == [1.0, 1.0]
-    (tmp_path / "b.inp").write_text(deck.text())
-    assert read_deck(tmp_path / "b.inp") == deck
-
-
 @pytest.mark.parametrize("name", ["block_on_joint", "sliding_block", "xingbiling_different"])
 def test_decks_that_are_written_again_are_the_same(program_path, tmp_path, name):
     """--check prints the same model for a deck and for its flat copy, but for places of files."""

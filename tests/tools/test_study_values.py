@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from harness import ROOT
 from keyway_tools.study.couplings import coupling_rungs
-from keyway_tools.study.deck_cards import FLAGS, OF_SEVERAL_WORDS, Card, Deck, read_deck
+from keyway_tools.study.deck_cards import Card, Deck, read_deck
 from keyway_tools.study.effects import list_effects
 from keyway_tools.study.errors import errors_of
 from keyway_tools.study.facts import facts_of
@@ -18,7 +18,6 @@ from keyway_tools.study.mesh_sets import read_sets, support_of
 from keyway_tools.study.refined_mesh import RefinementError, refine
 from keyway_tools.study.rungs import BASE, ONCE, TWICE, Rung, as_it_is, base_deck, list_rungs
 from keyway_tools.study.words import sentences_of_quantity
-from make_keywords import ask, read_families, read_keywords
 from tied_blocks import Blocks, node_set, state_of
 
 LAW = "*DENSITY\n2400.\n*ELASTIC\n2e10, 0.\n*EXPANSION\n1e-5\n"
@@ -368,17 +367,6 @@ def test_odd_decks_are_read_as_the_program_reads_them(keyway, tmp_path):
     fine, _ = with_all_nodes(refine(deck_of(tmp_path, ODD_DECK)), "RF")
     reaction = state_of(run(keyway, fine, "fine"), "EVERY", "RF")
     assert reaction.sum(axis=0) == pytest.approx([0.0, 0.0, 24e3], abs=1e-6)
-
-
-def test_names_and_flags_of_the_reader_are_those_of_the_program(program_path):
-    """Of all keywords that the program takes."""
-    names = [name for _, names in read_families(ask(program_path)) for name in names]
-    pages = [page for name in names for page in read_keywords(ask(program_path, name))]
-    taken = {page.name.strip("*") for page in pages if page.place and not page.remark}
-    flags = {name for page in pages for title, rows in page.blocks if title == "Parameters"
-             for name, text in rows if "(flag)" in text and "refused" not in text}  # fmt: skip
-    assert set(OF_SEVERAL_WORDS) == {name for name in taken if " " in name}
-    assert set(FLAGS) == flags
 
 
 def test_data_lines_below_a_file_of_temperatures(tmp_path):

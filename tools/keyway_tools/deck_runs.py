@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import hashlib
 import json
 import os
-import re
 import signal
 import subprocess
 import threading
@@ -15,7 +13,7 @@ import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from keyway_tools.deck_bytes import place_of, read_deck_text
+from keyway_tools.input_digest import digest_of
 from keyway_tools.job_folder import has_results, state_of, summary_of, wait_until_free
 
 RECORD = ".batch.json"
@@ -58,32 +56,6 @@ def send(child: subprocess.Popen[bytes], sign: signal.Signals) -> None:
         os.killpg(child.pid, sign)
 
 
-def files_of(deck: Path) -> list[Path]:
-    """The deck and every file named with INPUT=, in order."""
-    found, waiting = [], [deck.resolve()]
-    while waiting:
-        path = waiting.pop(0)
-        if path in found:
-            continue
-        found.append(path)
-        if path.suffix.lower() == ".at2" or not path.is_file():
-            continue
-        text = read_deck_text(path)
-        for line in re.findall(r"^[ \t]*\*(?!\*).*$", text, re.MULTILINE):
-            for name in re.findall(r"\bINPUT\s*=\s*(\"[^\"]*\"|[^,\s]+)", line, re.IGNORECASE):
-                waiting.append(place_of(path.parent, name.strip('"')))
-    return found
-
-
-def digest_of(deck: Path, program: str) -> str:
-    """A digest of the deck, the files it includes and the version of the program."""
-    total = hashlib.sha256(program.encode())
-    for path in files_of(deck):
-        total.update(os.fsencode(path.name))
-        total.update(path.read_bytes() if path.is_file() else b"missing")
-    return total.hexdigest()
-
-
 def earlier_record(folder: Path) -> Record | None:
     """The record of an earlier run in the folder, if it can be read."""
     try:
@@ -119,20 +91,20 @@ class DeckRunner:
 
     def is_kept(self, deck: Path, folder: Path) -> bool:
         """Whether a run of this deck has finished in the folder, and its results are there."""
-        wanted = Record("", "", "", digest_of(deck, self.version), self.options)
+        wanted = Record("", "", "", self._digest_of(deck), self.options)
         earlier = earlier_record(folder)
         return earlier is not None and is_same(earlier, wanted) and has_results(folder, deck)
 
     def record_of(self, deck: Path, folder: Path) -> Record:
         """What a run of this deck has left in the folder; 'not run' where it has left nothing."""
-        wanted = Record(str(deck), str(folder), "not run", digest_of(deck, self.version))
+        wanted = Record(str(deck), str(folder), "not run", self._digest_of(deck))
         earlier = earlier_record(folder)
         return earlier if earlier and earlier.digest == wanted.digest else wanted
 
     def run(self, deck: Path, folder: Path, again: bool = False) -> Record:
         """Runs the deck, or returns the record of an equal run that finished."""
         record = Record(str(deck), str(folder), "not run", options=self.options)
-        record.digest = digest_of(deck, self.version)
+        record.digest = self._digest_of(deck)
         earlier = earlier_record(folder)
         if earlier and not again and is_same(earlier, record) and has_results(folder, deck):
             earlier.was_kept = True
@@ -150,6 +122,9 @@ class DeckRunner:
         read_results(deck, record, before)
         record.write()
         return record
+
+    def _digest_of(self, deck: Path) -> str:
+        return digest_of(deck, self.version, self.options)
 
     def _execute(self, deck: Path, record: Record) -> None:
         command = [

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from keyway_tools.deck_bytes import exact_text
+
 from keyway.deck import Deck
 from keyway.deck.data import is_data
 
@@ -76,7 +78,7 @@ def cases_of_table(template: Path, table: Path, top: Path) -> list[Case]:
     for a name without a column, a column that the template does not use, names that are no names
     of files or are given twice.
     """
-    text = template.read_bytes().decode("utf-8", errors="surrogateescape")
+    text = exact_text(template.read_bytes())
     columns, rows = read_values(table)
     _check_names(template, text, table, columns)
     cases = []

@@ -6,9 +6,9 @@
     keyway-batch ... --on dask://HOST:8786
 
 The results of a deck are in DIR/<name of the deck>. A deck that finished before with the same
-content (included files too), options and version of the program is not run again: the same call
-goes on after an interruption. Options of keyway follow a `--`, as in: keyway-batch input/*/*.inp
--j 2 -- -q
+content (also of the files that the deck and the options name), options and version of the program
+is not run again: the same call goes on after an interruption. Options of keyway follow a `--`, as
+in: keyway-batch input/*/*.inp -j 2 -- -q
 
 With --table each row of the CSV file is a case: the template has the names of its columns in
 braces, as in *JOINT LAW, FRICTION={FRICTION}; a column `case` names the cases. DIR/batch.csv, and

@@ -33,8 +33,8 @@ class Card:
     def keyword(self) -> str:
         """The keyword in capitals with single blanks, as 'BASE MOTION'.
 
-        '' for data lines above the first keyword of an included file: they continue the card above
-        *INCLUDE.
+        '' for data lines that continue the card above: those above the first keyword of an included
+        file, and those below *INCLUDE.
         """
         if not self.head:
             return ""
@@ -106,8 +106,14 @@ def read_cards(lines: list[str], file: Path) -> Iterator[Card]:
         place = _end_of_head(lines, place)
         head = lines[start:place]
         body, place = _body(lines, place)
-        yield Card(head, body, above, file, start + 1)
+        card = Card(head, body, above, file, start + 1)
         above = []
+        if not (body and card.is_a("INCLUDE")):
+            yield card
+            continue
+        card.body = []
+        yield card
+        yield Card([], body, [], file, start + len(head) + 1)  # goes on with the included file
     yield Card([], [], above, file, len(lines) + 1)
 
 

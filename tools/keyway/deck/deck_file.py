@@ -78,6 +78,23 @@ def included_file(card: Card) -> Path | None:
     return place_of(card.file.parent, name) if name else None
 
 
+def named_files(deck: Path) -> list[Path]:
+    """The deck and all files that its cards and those of included files name with INPUT, each once,
+    also those that are not there. Raises OSError for one that cannot be read.
+    """
+    found, waiting = [], [deck.resolve()]
+    while waiting:
+        path = waiting.pop(0)
+        found.append(path)
+        cards = DeckFile.read(path).cards if path.is_file() else []
+        for card in cards:
+            named = included_file(card)
+            if named is None or named in found or named in waiting:
+                continue
+            (waiting if card.is_a("INCLUDE") else found).append(named)
+    return found
+
+
 def _lines(text: str) -> list[str]:
     """The lines with their ends; only line feeds end a line."""
     parts = text.split("\n")

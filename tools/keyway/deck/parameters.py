@@ -44,12 +44,15 @@ class Parameters(MutableMapping[str, str | None]):
         return next((given for given in self._given() if given.name == words(name)), None)
 
     def __getitem__(self, name: str) -> str | None:
+        value = self.as_written(name)
+        return None if value is None else unquoted(value)
+
+    def as_written(self, name: str) -> str | None:
+        """The value with its quotes; None for a flag. Raises KeyError."""
         given = self._find(name)
         if given is None:
             raise KeyError(name)
-        if given.value is None:
-            return None
-        return unquoted(self._lines[given.line][slice(*given.value)])
+        return None if given.value is None else self._lines[given.line][slice(*given.value)]
 
     def __setitem__(self, name: str, value: Value | bool | None) -> None:
         is_flag = value is None or value is True

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TypeVar
 
 from keyway_tools.deck_bytes import capitals
 
@@ -15,7 +14,6 @@ from .fields import Value, as_text, quoted_if_needed
 _MEMBERS = {"NSET": "NODE", "ELSET": "ELEMENT"}
 _NODES = {"IFACE4": 4}  # of an element; 8 for all others
 _A_LINE = 12
-Place = TypeVar("Place")
 
 
 def collect(cards: Iterable[Card], kind: str) -> dict[str, set[int]]:
@@ -41,38 +39,42 @@ def collect(cards: Iterable[Card], kind: str) -> dict[str, set[int]]:
 
 def _first_numbers(source: Card, card: Card) -> Iterator[int]:
     """Numbers of nodes or elements; elements may take several lines."""
-    num_fields = 1
+    num_fields, where = 1, card.where
     if source.is_a("ELEMENT"):
         num_fields += _NODES.get((source.parameters.get("TYPE") or "").upper(), 8)
     fields: list[str] = []
     for row in card.data:
         fields += row[:]
         if source.is_a("NODE") or len(fields) >= num_fields:
-            yield _number(fields[0], card)
+            yield _number(fields[0], where)
             fields = []
 
 
 def _members(source: Card, card: Card, sets: dict[str, set[int]]) -> Iterator[int]:
     """Members of *NSET or *ELSET."""
-    rows = ((card, row) for row in card.data)
+    where = card.where
+    rows = ((where, row) for row in card.data)
     return members_of(rows, "GENERATE" in source.parameters, sets, _number)
 
 
 def members_of(
-    rows: Iterable[tuple[Place, Sequence[str]]],
+    rows: Iterable[tuple[str, Sequence[str]]],
     generates: bool,
     sets: Mapping[str, Iterable[int]],
-    number: Callable[[str, Place], int],
+    number: Callable[[str, str], int],
 ) -> Iterator[int]:
     """Members that data lines of *NSET or *ELSET name: numbers, sets above, ranges with GENERATE.
 
     `rows` are the lines, each with its place; `sets` have names in capitals; `number` reads a field
-    at a place, or raises.
+    at a place, or raises. Raises DeckError for a range that is none.
     """
     for place, row in rows:
         if generates:
-            first, last, step = (number(text, place) for text in [*row, "1", "1"][:3])
-            yield from range(first, last + 1, max(step, 1))
+            numbers = [number(text, place) for text in row]
+            if len(numbers) not in (2, 3) or min(numbers) < 1 or numbers[0] > numbers[1]:
+                raise DeckError(f"{place}: found '{', '.join(row)}'; expected first, last, step: "
+                                "integers > 0 with first <= last")  # fmt: skip
+            yield from range(numbers[0], numbers[1] + 1, *numbers[2:])
             continue
         for text in row:
             if capitals(text) in sets:
@@ -81,11 +83,11 @@ def members_of(
                 yield number(text, place)
 
 
-def _number(text: str, card: Card) -> int:
+def _number(text: str, where: str) -> int:
     try:
         return int(text)
     except ValueError:
-        raise DeckError(f"{card.where}: '{text}' is neither a number nor a set above") from None
+        raise DeckError(f"{where}: '{text}' is neither a number nor a set above") from None
 
 
 def set_text(kind: str, name: str, members: Iterable[Value]) -> str:

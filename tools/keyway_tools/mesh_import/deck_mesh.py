@@ -1,7 +1,7 @@
 """Decks of Abaqus and CalculiX as meshes: nodes, elements, and their sets whole.
 
 Sets are those of the program: a second card with a name adds members, a set may name sets above,
-and GENERATE has a range a line.
+and GENERATE has a range a line. A set of nodes may be those of a set of elements (ELSET of *NSET).
 """
 
 from __future__ import annotations
@@ -96,16 +96,41 @@ class _Reader:
                 own = {"ELSET": self._read_elements(card, source)}
             else:
                 own = {
-                    kind: sets.members(card, source)
+                    kind: [*sets.members(card, source)]
                     for kind, sets in self.sets.items()
                     if source.is_a(kind)
                 }
+                if card.is_a("NSET") and "ELSET" in card.parameters:
+                    own["NSET"] += self._nodes_of_set(card)
             for kind, members in own.items():
                 name = source.parameters.get(kind)
                 if name:
-                    self.sets[kind].add(name, [*members])
+                    self.sets[kind].add(name, members)
                 elif source.is_a(kind):
                     raise MeshError(f"{source.where}: no name; expected {kind}=name")
+
+    def _nodes_of_set(self, card: Card) -> list[int]:
+        """Numbers of the nodes of the elements that ELSET of *NSET names. Raises MeshError."""
+        name = card.parameters["ELSET"] or ""
+        known = self.sets["ELSET"]
+        if capitals(name) not in known.numbers:
+            fault = f"found '{name}'; expected the name of a set of elements above"
+            raise MeshError(f"{card.where}: {fault}")
+        elements = self._nodes_of_elements(known.numbers[capitals(name)], name)
+        return [*dict.fromkeys(node for nodes in elements for node in nodes)]
+
+    def _nodes_of_elements(self, numbers: list[int], name: str) -> Iterator[list[int]]:
+        """Numbers of the nodes of each element of a set."""
+        for number in numbers:
+            block, _ = self._element(number, name)
+            yield self.cells[block][1][number]
+
+    def _element(self, number: int, name: str) -> tuple[int, int]:
+        """Block of an element of a set and its position there. Raises MeshError."""
+        if number not in self.elements:
+            what = f"element {number} of set {name} is not there"
+            raise MeshError(f"{self.path}: {what}; expected an element of the mesh")
+        return self.elements[number]
 
     def _read_nodes(self, card: Card) -> list[int]:
         """Numbers of the nodes of a card."""
@@ -146,6 +171,15 @@ class _Reader:
             self.cells.append((kind, rows))
         return [*rows]
 
+    def notes(self) -> list[str]:
+        """The sets without members, which are lost."""
+        return [
+            f"{kind} '{sets.names[key]}' has no members; left out"
+            for kind, sets in self.sets.items()
+            for key, numbers in sets.numbers.items()
+            if not numbers
+        ]
+
     def mesh(self) -> meshio.Mesh:
         """The mesh. Raises MeshError for members that are not there."""
         cells = [
@@ -175,10 +209,7 @@ class _Reader:
         """Positions of elements in each block."""
         found: list[list[int]] = [[] for _ in self.cells]
         for number in numbers:
-            if number not in self.elements:
-                what = f"element {number} of set {name} is not there"
-                raise MeshError(f"{self.path}: {what}; expected an element of the mesh")
-            block, position = self.elements[number]
+            block, position = self._element(number, name)
             found[block].append(position)
         return [np.unique(np.array(own, dtype=int)) for own in found]
 
@@ -194,7 +225,7 @@ def read_deck_mesh(path: Path) -> tuple[meshio.Mesh, list[str]]:
         raise MeshError(f"{path}: {fault.strerror}") from None
     except DeckError as fault:
         raise MeshError(str(fault)) from None
-    return reader.mesh(), notes
+    return reader.mesh(), notes + reader.notes()
 
 
 def notes_of_deck(path: Path, cards: list[Card]) -> list[str]:

@@ -151,7 +151,7 @@ def renamed_groups(origins: dict[str, str]) -> list[str]:
     return [
         f"group '{name}' is {word} in the deck"
         for word, name in origins.items()
-        if name.strip().upper() != word
+        if capitals(name.strip()) != word
     ]
 
 

@@ -31,6 +31,10 @@ _NAME_OF_TIME = re.compile(
 _UNIT_IN_BRACKETS = re.compile(r"\s*\[[^\]]*\]\s*$")
 COLUMNS, ONE_COLUMN = "columns", "one column"  # kinds of files
 EVEN = 1.0e-3  # admissible scatter of the time between values, over its mean
+# A step without its value is twice as long as the others or, rounded, 1.5 times. Steps of 1 to 1.2
+# digits, of which a smaller share is long, are no rate of any instrument (833 to 1000 Hz in ms).
+LONG, RARE = 1.5, 0.2
+_ROUND_OFF = 1.0e-9  # of times in double precision [s]
 
 
 def read_columns(path: Path, lines: list[str], unit: str | None, dt: float | None) -> list[Record]:
@@ -133,12 +137,31 @@ def _time_step(path: Path, time: np.ndarray) -> float:
         raise RecordError(
             f"{path}: time {time[place]:g} after {time[place - 1]:g}; expected times that ascend"
         )
-    if np.abs(steps - mean).max() > max(EVEN * mean, 2.0 * _resolution(time)):
+    if not _is_even(time, steps, mean):
         raise RecordError(
             f"{path}: the time between values goes from {steps.min():g} to {steps.max():g} s; "
             "expected equal times"
         )
     return float(f"{mean:.6g}")
+
+
+def _is_even(time: np.ndarray, steps: np.ndarray, mean: float) -> bool:
+    """Whether the times are even, or were before they were rounded to the digits of the file.
+
+    The difference of two rounded times is off by less than their last digit. The line through the
+    first and the last time is off by half a digit at each end, and a time by as much. At a few
+    digits a step, a value that is missing looks like a time that was rounded: then the long steps
+    are rare.
+    """
+    if np.abs(steps - mean).max() <= EVEN * mean:
+        return True
+    digit = _resolution(time)
+    line = time[0] + mean * np.arange(time.size)
+    is_rounded = bool(
+        np.abs(steps - mean).max() < digit and np.abs(time - line).max() <= digit + _ROUND_OFF
+    )
+    share_of_long = float(np.mean(steps > LONG * np.median(steps)))
+    return is_rounded and not 0.0 < share_of_long < RARE
 
 
 def _resolution(time: np.ndarray) -> float:

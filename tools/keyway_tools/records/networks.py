@@ -56,11 +56,12 @@ def numbers_in(
         else:
             words = NUMBER.findall(line)
         try:
-            values += map(_real, words)
+            own = [_real(word) for word in words]
         except ValueError:
             raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected numbers") from None
-        if not all(map(math.isfinite, values)):
+        if not all(map(math.isfinite, own)):
             raise RecordError(f"{path}: found '{line.strip()[:40]}'; expected finite numbers")
+        values += own
         if len(values) >= count and not are_all:
             return np.array(values[:count])
     if len(values) == count:

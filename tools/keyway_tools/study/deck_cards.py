@@ -1,7 +1,6 @@
-"""A deck as a list of cards that can be changed and written again.
+"""A deck as one list of cards, with those of included files, that is changed and written again.
 
-The reader knows the grammar of decks (keyword lines, parameters, data lines, *INCLUDE), of keywords
-their names alone. Keyway itself checks the deck.
+keyway.deck reads the cards. Keyway itself checks the deck.
 """
 
 from __future__ import annotations
@@ -12,26 +11,16 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..deck_bytes import capitals, place_of, read_deck_text
+import keyway.deck
+from keyway.deck.data import is_data
+from keyway.deck.deck_file import included_file
+from keyway.deck.known import whole_name
+
+from ..deck_bytes import capitals
 
 # Cards with files beside the deck: the file is named by this parameter.
 FILE_PARAMETER = "INPUT"
 LONGEST_LINE = 100
-# Keywords of several words: a deck may leave the blanks out
-OF_SEVERAL_WORDS = (
-    "END PART", "END INSTANCE", "END ASSEMBLY", "USER MATERIAL", "CONCRETE DAMAGED PLASTICITY",
-    "CONCRETE COMPRESSION HARDENING", "CONCRETE TENSION STIFFENING", "CONCRETE COMPRESSION DAMAGE",
-    "CONCRETE TENSION DAMAGE", "MATERIAL TEST", "SOLID SECTION", "JOINT LAW", "SURFACE INTERACTION",
-    "SURFACE BEHAVIOR", "CONTACT PAIR", "BASE MOTION", "INITIAL CONDITIONS", "END STEP",
-    "MODEL CHANGE", "NODE PRINT", "EL PRINT", "JOINT PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT",
-    "ELEMENT OUTPUT",
-)  # fmt: skip
-WHOLE_NAMES = {name.replace(" ", ""): name for name in OF_SEVERAL_WORDS}
-# Parameters without a value: a line that begins with one may go on with those of the keyword
-FLAGS = (
-    "DIRECT", "FIELD", "GENERATE", "HISTORY", "INTERNAL", "MODAL", "PERTURBATION", "REDUCED",
-    "REMOVE", "SMALL SLIDING", "UNSORTED", "UNSYMM", "WRITE",
-)  # fmt: skip
 
 
 @dataclass
@@ -145,84 +134,27 @@ class Deck:
 def read_deck(path: Path) -> Deck:
     """A deck with all its *INCLUDE files. Other files keep their place on the disk.
 
-    Raises OSError for a file that cannot be read.
+    Raises OSError for a file that cannot be read, DeckError for one that a deck cannot include.
     """
-    sources: set[Path] = set()
-    return Deck(list(_cards_of_lines(_lines_of(path.resolve(), sources))), sources=sources)
-
-
-def _lines_of(path: Path, sources: set[Path]) -> Iterator[tuple[str, Path]]:
-    """The lines of a file without comments, with the folder of their file. Those of an included
-    file stand in place of *INCLUDE, also among the data of a keyword. Adds to `sources` the files.
-    """
-    sources.add(path)
-    include, is_open = None, False
-    for line in map(str.strip, read_deck_text(path).split("\n")):
-        if not line or line.startswith("**"):
+    source = keyway.deck.Deck(path)
+    cards: list[Card] = []
+    for card in source.cards:
+        if card.is_a("INCLUDE"):
             continue
-        if include and is_open and not line.startswith("*") and _has_parameters(line):
-            is_open = _add_parameters(include, line)
-            continue
-        if include:
-            yield from _lines_of(_place_of(include, path.parent), sources)
-            include = None
-        keyword, rest = _head_of(line)
-        if keyword == "INCLUDE":
-            include = Card(keyword)
-            is_open = _add_parameters(include, rest)
-        else:
-            yield line, path.parent
-    if include:
-        yield from _lines_of(_place_of(include, path.parent), sources)
+        if card.keyword:
+            cards.append(_card_of(card))
+        elif cards:  # the data of the card above go on
+            cards[-1].lines += _data_of(card)
+    return Deck(cards, sources=set(source.files))
 
 
-def _head_of(line: str) -> tuple[str, str]:
-    """Keyword and parameters of a line; no keyword for data."""
-    if not line.startswith("*"):
-        return "", line
-    head, _, rest = line[1:].partition(",")
-    name = " ".join(head.upper().split())
-    return WHOLE_NAMES.get(name.replace(" ", ""), name), rest
+def _card_of(card: keyway.deck.Card) -> Card:
+    """The card alone; the file that it names is that on the disk."""
+    own = {name: card.parameters.as_written(name) for name in card.parameters}
+    if (named := included_file(card)) is not None:
+        own[FILE_PARAMETER] = f'"{named}"'
+    return Card(whole_name(card.keyword), own, _data_of(card))
 
 
-def _place_of(card: Card, folder: Path) -> Path:
-    """The file of a card; its path is relative to the file that names it."""
-    return place_of(folder, (card.parameters[FILE_PARAMETER] or "").strip("\"'"))
-
-
-def _cards_of_lines(lines: Iterable[tuple[str, Path]]) -> Iterator[Card]:
-    card = None
-    is_open = False  # the keyword line goes on in the next line
-    for line, folder in lines:
-        keyword, rest = _head_of(line)
-        is_open = is_open and not keyword and _has_parameters(line)
-        if keyword:
-            if card:
-                yield card
-            card = Card(keyword)
-            is_open = (bool(rest) or line.endswith(",")) and _add_parameters(card, rest)
-            is_open = is_open and keyword != "HEADING"
-        elif is_open and card:
-            is_open = _add_parameters(card, line)
-        elif card:
-            card.lines.append(line)
-            continue
-        if card and card.parameters.get(FILE_PARAMETER):
-            card.parameters[FILE_PARAMETER] = f'"{_place_of(card, folder)}"'
-    if card:
-        yield card
-
-
-def _has_parameters(line: str) -> bool:
-    """Whether a line below a comma goes on with the keyword; else the comma has no meaning."""
-    return "=" in line or " ".join(line.partition(",")[0].upper().split()) in FLAGS
-
-
-def _add_parameters(card: Card, text: str) -> bool:
-    """Adds the parameters of a line; whether the next line goes on with them."""
-    for item in fields_of(text):
-        name, equals, value = item.partition("=")
-        name = " ".join(name.upper().split())
-        if name:
-            card.parameters[name] = value.strip() if equals else None
-    return text.rstrip().endswith(",") or not text.strip()
+def _data_of(card: keyway.deck.Card) -> list[str]:
+    return [line.strip() for line in card.body if is_data(line)]
