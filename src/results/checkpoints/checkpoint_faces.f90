@@ -5,7 +5,7 @@ module checkpoint_faces
   use archive_type, only: archive
   use dam_faces, only: dam_skin
   use envelopes, only: envelope
-  use extremes, only: extremes_by_face, forget_faces, note_histories
+  use extremes, only: forget_faces, note_histories
   use field_type, only: at_nodes
   use problem_definition, only: problem
   use run_records, only: run_record
