@@ -9,6 +9,7 @@ set(sources
   files/file_system.f90
   files/hdf5_archive.f90
   files/hdf5_files.f90
+  files/hdf5_renewal.f90
   files/hdf5_tables.f90
   files/json_writer.f90
   files/pvd_files.f90

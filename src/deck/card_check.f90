@@ -13,7 +13,8 @@ module card_check
   use write_text, only: as_text
   implicit none
   private
-  public :: check_card, check_given_parameters, check_lines, longest_name
+  public :: check_card, check_given_parameters, check_lines, found_no_integer, is_too_large, &
+            longest_name
 
   integer, parameter :: most_letters = 80 !< of a name, as in Abaqus
   integer, parameter :: longest_name = 2*most_letters !< bytes: names of files have at most 255
@@ -303,7 +304,26 @@ contains
       is_right = .true.
     end select
     if (.not. is_right) problem = "found '"//word//"'"
+    if (wanted%kind == kind_integer .and. .not. is_right) problem = found_no_integer(word)
   end subroutine check_word
+
+  !> 'found 'WORD'', of a whole number that is too large with the largest.
+  pure function found_no_integer(word) result(problem)
+    character(*), intent(in) :: word
+    character(:), allocatable :: problem
+    problem = "found '"//word//"'"
+    if (is_too_large(word)) problem = problem//', beyond the largest integer, '//as_text(huge(1))
+  end function found_no_integer
+
+  !> Whether a word is a whole number that no integer holds.
+  pure logical function is_too_large(word)
+    character(*), intent(in) :: word
+    real(rk) :: value
+    is_too_large = verify(word, '+-0123456789') == 0
+    if (.not. is_too_large) return
+    call parse_real(word, value, is_too_large)
+    is_too_large = is_too_large .and. abs(value) > huge(1)
+  end function is_too_large
 
   !> What is wrong with a name: names are used for files and in HDF5. '' for a good name.
   pure function fault_of_name(word) result(problem)

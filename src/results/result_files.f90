@@ -42,8 +42,7 @@ module result_files
     logical, private :: is_open = .false., has_unwritten_envelopes = .false.
     type(progress_clock) :: clock
     real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
-    integer, private :: num_warnings_printed = 0
-    integer, private :: num_checkpoints = 0
+    integer, private :: num_warnings_printed = 0, num_checkpoints = 0
     logical :: is_from_old = .false. !< the last checkpoint is damaged
     type(writer_item), allocatable, private :: writers(:)
   contains
@@ -125,7 +124,7 @@ contains
     self%summary = found%summary
     self%num_checkpoints = found%number
     self%is_from_old = found%is_old
-    self%num_warnings_printed = size(self%record%warnings)
+    self%num_warnings_printed = found%num_warnings
     self%has_unwritten_envelopes = size(self%record%active) > 0 .and. .not. now%is_last_of_step
   end subroutine load
 
@@ -143,7 +142,8 @@ contains
       call self%writers(w)%item%go_on(model, self%stem, self%record, error)
     end do
     self%is_open = .not. allocated(error)
-    if (self%is_open) call restart_journals(self%stem, self%num_checkpoints, self%writers, error)
+    if (self%is_open) call restart_journals(self%stem, self%num_checkpoints, model, self%record, &
+                                            self%writers, error)
     call self%costs%stop()
     if (allocated(error)) return
     call warn_of_missing(self%stem, self%writers, self%record)

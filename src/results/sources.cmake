@@ -1,4 +1,5 @@
 set(sources
+  checkpoints/checkpoint_faces.f90
   checkpoints/checkpoint_files.f90
   checkpoints/checkpoint_identity.f90
   checkpoints/run_checkpoint.f90

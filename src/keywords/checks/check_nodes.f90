@@ -67,10 +67,11 @@ contains
     logical, intent(in) :: is_held(:, :) !< (3, nodes) in the step of the card
     logical, intent(in) :: is_there(:) !< (nodes) has an element in this step
     type(diagnostic_list), intent(inout) :: faults
+    type(diagnostic_list) :: dropped ! the reader of the card has given these warnings
     integer, allocatable :: nodes(:)
     integer :: line
     do line = 1, this%num_lines
-      call nodes_at(this, line, 1, model, faults, nodes)
+      call nodes_at(this, line, 1, model, dropped, nodes)
       if (is_keyword(this, 'BOUNDARY')) then
         call warn_of_bare_nodes(this, line, nodes, model, 'its support has no effect', faults)
         if (.not. moves(this, line)) cycle

@@ -1,7 +1,7 @@
 !> References of a card by id or name: nodes, elements, surfaces, amplitudes. A fault is reported
 !> at the place of the reference.
 module named_things
-  use card_check, only: longest_name
+  use card_check, only: found_no_integer, is_too_large, longest_name
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use id_map, only: position_table
@@ -86,8 +86,7 @@ contains
     if (this%is_integer_at(line, field)) then
       found = position%find(this%integer_at(line, field))
       if (found == 0) then
-        call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
-                           ' does not exist', with_article(kind)//' of the model')
+        call fault_unknown_id(this, line, field, kind, sets, faults)
       else if (this%keyword /= 'NSET' .and. this%keyword /= 'ELSET') then
         call warn_of_set(this, line, field, kind, position, sets, faults)
       end if
@@ -101,6 +100,22 @@ contains
     end if
     members = pack([found], [found > 0])
   end subroutine members_at
+
+  !> Reports an id that does not exist. A set may have this name, while a number is always an id.
+  subroutine fault_unknown_id(this, line, field, kind, sets, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    character(*), intent(in) :: kind !< 'node' or 'element'
+    type(set_list), intent(in) :: sets
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: wanted
+    wanted = with_article(kind)//' of the model'
+    if (sets%find(this%word_at(line, field)) > 0) then
+      wanted = wanted//", or for the set '"//this%text_at(line, field)//"' a name with a letter"
+    end if
+    call this%fault_at(faults, line, field, kind//' '//this%text_at(line, field)// &
+                       ' does not exist', wanted)
+  end subroutine fault_unknown_id
 
   !> Warns of a number that is the name of a set too: once for the card, with the lines that follow.
   subroutine warn_of_set(this, line, field, kind, position, sets, faults)
@@ -164,6 +179,11 @@ contains
     character(*), intent(in) :: kind !< 'node' or 'element'
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
+    if (is_too_large(this%text_at(line, field))) then
+      call this%fault_at(faults, line, field, found_no_integer(this%text_at(line, field)), &
+                         'the id of one '//kind)
+      return
+    end if
     call this%fault_at(faults, line, field, &
                        'there is no '//kind//" set '"//this%text_at(line, field)// &
                        "' above this line", &

@@ -10,7 +10,7 @@ module dload_labels
   use kinds, only: rk
   use load_gravity, only: gravity_load
   use load_pressure, only: face_of_word, faces_of_elements, pressure_load
-  use mesh_faces, only: face_nodes
+  use mesh_faces, only: count_corners, face_nodes
   use model_draft, only: draft
   use write_text, only: as_text
   implicit none
@@ -229,6 +229,7 @@ contains
                          'solid elements')
       return
     end if
+    call check_areas(this, line, elements, model, faults)
     push = variation
     push%kind = 'pressure'
     push%pressure = 1.0_rk
@@ -239,6 +240,33 @@ contains
                   pattern_of([push%top, push%reference], size(elements)), &
                   this%real_at(line, 3), history)
   end subroutine put_push
+
+  !> A pressure has no effect on a face that has collapsed.
+  subroutine check_areas(this, line, elements, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, elements(:)
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem
+    logical :: has_area(size(elements))
+    integer :: i, face
+    face = face_of_word(this%word_at(line, 2))
+    associate (mesh => model%problem%mesh)
+      has_area = [(count_corners(face_nodes(mesh, elements(i), face)) >= 3, i=1, size(elements))]
+      if (all(has_area)) return
+      i = findloc(has_area, .false., dim=1)
+      problem = 'face S'//as_text(face)//' of element '//as_text(mesh%element_id(elements(i)))// &
+                ' has no area'
+    end associate
+    if (.not. any(has_area)) then
+      call this%fault_at(faults, line, 2, problem, 'a face that has not collapsed')
+      return
+    end if
+    i = count(.not. has_area)
+    if (i > 1) problem = problem//', nor have '//as_text(i - 1)//' more of the set'
+    call this%warn_at(faults, line, 2, problem//': the pressure has no effect there ('// &
+                      as_text(i)//' of '//as_text(size(elements))//' faces)')
+  end subroutine check_areas
 
   !> Numbers as a text to compare: equal texts mean equal patterns. A set or a surface may have
   !> grown since an earlier step.

@@ -1,5 +1,6 @@
 !> *ELEMENT.
 module keywords_elements
+  use card_check, only: found_no_integer
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use element_advice, only: advise, num_nodes_of_type
@@ -207,7 +208,7 @@ contains
     type(card), intent(in) :: this
     integer, intent(in) :: line, field
     type(diagnostic_list), intent(inout) :: faults
-    call this%fault_at(faults, line, field, "found '"//this%text_at(line, field)//"'", &
+    call this%fault_at(faults, line, field, found_no_integer(this%text_at(line, field)), &
                        'an id, an integer > 0')
   end subroutine fault_no_integer
 

@@ -3,6 +3,7 @@ module run_checkpoint
   use analysis_state, only: state
   use checkpoint_files, only: checkpoint_path, new_checkpoint_path, new_journal_path, &
                               keep_checkpoint, keep_journal, take_journal
+  use checkpoint_faces, only: renew_faces, save_faces
   use checkpoint_identity, only: check_identity, save_identity
   use errors, only: deck_is_wrong, error_type, keep_first, raise, system_failed
   use hdf5_archive, only: hdf5_store
@@ -24,6 +25,7 @@ module run_checkpoint
     type(state), allocatable :: now
     type(run_record) :: record
     type(run_summary) :: summary
+    integer :: num_warnings = 0 !< of the record in the checkpoint
     integer :: number = 0 !< of the checkpoint, from 1
     logical :: is_old = .false. !< it is the one before the last
   end type run_position
@@ -46,6 +48,7 @@ contains
     call file%put('number', number)
     call file%put('step', now%step)
     call save_identity(model, file)
+    call save_faces(record%skin, file)
     call save_state(now, file, error)
     if (.not. allocated(error)) call save_record(record, file, error)
     if (.not. allocated(error)) call save_summary(summary, file, error)
@@ -58,14 +61,22 @@ contains
     if (allocated(error)) call remove_file(new_checkpoint_path(stem))
   end subroutine save_checkpoint
 
-  !> Starts the journal of the last checkpoint anew, when a run goes on from there.
-  subroutine restart_journals(stem, number, writers, error)
+  !> Starts the journal of the last checkpoint anew, when a run goes on from there. Then what has
+  !> changed in the model is written.
+  subroutine restart_journals(stem, number, model, record, writers, error)
     character(*), intent(in) :: stem
     integer, intent(in) :: number !< of the checkpoint
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record
     type(writer_item), intent(inout) :: writers(:)
     type(error_type), allocatable, intent(out) :: error
+    integer :: w
     call start_journals(stem, number, writers, error)
     if (.not. allocated(error)) call take_journal(stem, error)
+    do w = 1, size(writers)
+      if (allocated(error)) return
+      if (.not. writers(w)%item%is_idle) call writers(w)%item%renew(model, record, error)
+    end do
   end subroutine restart_journals
 
   !> Starts the journal of a checkpoint, under another name than that of the last one.
@@ -169,6 +180,11 @@ contains
       call load_state(found%now, file, failure)
       if (.not. allocated(failure)) call load_record(found%record, file, failure)
       found%record%path = found%now%path
+      found%num_warnings = size(found%record%warnings)
+      if (.not. allocated(failure)) then
+        call renew_faces(model, found%now, file, found%record)
+        call file%report(failure)
+      end if
       if (.not. allocated(failure)) call load_summary(found%summary, file, failure)
       if (.not. allocated(failure)) call load_positions(writers, file, failure)
     end if

@@ -3,7 +3,7 @@ module extremes
   use kinds, only: rk
   implicit none
   private
-  public :: extreme, extremes_by_face, face_names, note_values
+  public :: extreme, extremes_by_face, face_names, forget_faces, note_histories, note_values
 
   !> The order of `extremes_by_face%at`.
   character(10), parameter :: face_names(3) = ['anywhere  ', 'upstream  ', 'downstream']
@@ -50,4 +50,38 @@ contains
       kept = extreme(.true., value, time, x(:, i))
     end subroutine note_value
   end subroutine note_values
+
+  !> Forgets the extremes on both faces.
+  pure subroutine forget_faces(record)
+    type(extremes_by_face), intent(inout) :: record
+    record%at(2:) = extreme()
+  end subroutine forget_faces
+
+  !> Finds the extremes on both faces from the extreme of each place and its time: those that
+  !> `note_values` finds from all times.
+  pure subroutine note_histories(record, values, times, x, is_upstream, is_downstream, &
+                                 wants_smallest)
+    type(extremes_by_face), intent(inout) :: record
+    real(rk), intent(in) :: values(:), times(:) !< (places) times in s
+    real(rk), intent(in) :: x(:, :) !< (3, places) [m]
+    logical, intent(in) :: is_upstream(:), is_downstream(:) !< (places)
+    logical, intent(in) :: wants_smallest
+    real(rk) :: sign_of
+    sign_of = merge(-1.0_rk, 1.0_rk, wants_smallest)
+    record%at(2) = largest_of(is_upstream)
+    record%at(3) = largest_of(is_downstream)
+
+  contains
+
+    !> The largest of the marked places, of these the earliest, of these the first.
+    pure type(extreme) function largest_of(is_marked) result(found)
+      logical, intent(in) :: is_marked(:)
+      logical :: is_largest(size(values))
+      integer :: i
+      if (.not. any(is_marked)) return
+      is_largest = is_marked .and. sign_of*values >= maxval(sign_of*values, mask=is_marked)
+      i = minloc(times, dim=1, mask=is_largest)
+      if (i > 0) found = extreme(.true., values(i), times(i), x(:, i))
+    end function largest_of
+  end subroutine note_histories
 end module extremes

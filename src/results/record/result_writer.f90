@@ -26,6 +26,7 @@ module result_writer
     procedure :: go_on
     procedure :: note_missing
     procedure :: start_undo
+    procedure :: renew
     procedure :: write_modes
     procedure :: write_envelopes
     procedure :: write_costs
@@ -103,6 +104,15 @@ contains
     integer, intent(in) :: number !< of the checkpoint
     type(error_type), allocatable, intent(out) :: error
   end subroutine start_undo
+
+  !> The run goes on, with a deck whose later steps may have changed: writes what has changed in the
+  !> files before the checkpoint, after `start_undo`, so that a kill can be undone.
+  subroutine renew(self, model, record, error)
+    class(writer), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record !< of the checkpoint
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine renew
 
   !> A *FREQUENCY step has found its modes.
   subroutine write_modes(self, model, step, modes, record, error)

@@ -58,6 +58,7 @@ module run_records
     procedure :: warn_once
     procedure :: list_file
     procedure :: has_envelope_of_nodes
+    procedure :: list_solid_nodes
     procedure :: largest_opening
     procedure, private :: warn_of_increment
     procedure, private :: update_envelope, note_nodes, note_points, note_joints, note_error
@@ -183,10 +184,7 @@ contains
     integer, allocatable :: solid_nodes(:)
     type(extreme) :: before
     integer :: n
-    call self%stresses%need_plan(model)
-    associate (start => self%stresses%plan%node_start)
-      solid_nodes = pack([(n, n=1, size(values))], start(2:) > start(:size(start) - 1))
-    end associate
+    call self%list_solid_nodes(model, solid_nodes)
     call note_envelope(item, values, now%total_time)
     before = item%largest%at(1)
     call note_values(item%largest, values(solid_nodes), model%mesh%x(:, solid_nodes), &
@@ -197,6 +195,18 @@ contains
     n = maxloc(merge(-values(solid_nodes), values(solid_nodes), item%wants_smallest), dim=1)
     call self%note_error(model, now, costs, solid_nodes(n), before, item)
   end subroutine note_nodes
+
+  !> The nodes of the solids that are there.
+  subroutine list_solid_nodes(self, model, nodes)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
+    integer, allocatable, intent(out) :: nodes(:)
+    integer :: n
+    call self%stresses%need_plan(model)
+    associate (start => self%stresses%plan%node_start)
+      nodes = pack([(n, n=1, size(start) - 1)], start(2:) > start(:size(start) - 1))
+    end associate
+  end subroutine list_solid_nodes
 
   !> The error of an extreme that has grown.
   subroutine note_error(self, model, now, costs, node, before, item)

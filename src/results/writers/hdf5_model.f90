@@ -1,4 +1,5 @@
-!> The model in job.h5: mesh, sets, surfaces, joints. Written once, at the start.
+!> The model in job.h5: mesh, sets, surfaces, joints. Written at the start. Where a run goes on, the
+!> deck may have new sets and surfaces, and its later steps another reservoir or weight.
 module hdf5_model
   use dam_mesh, only: named_set
   use problem_definition, only: problem
@@ -6,11 +7,12 @@ module hdf5_model
   use run_records, only: run_record
   use joint_readings, only: joint_record
   use hdf5_files, only: hdf5_file
+  use hdf5_renewal, only: has_link, renew_integer, renew_integers
   use file_system, only: link_name
   use upward_axis, only: find_upward_axis
   implicit none
   private
-  public :: write_model
+  public :: write_model, renew_model
 
 contains
 
@@ -22,9 +24,10 @@ contains
     integer :: j
     call write_mesh(file, model)
     call file%make_group('/sets')
-    call write_sets(file, '/sets/nodes', model%node_sets, model%mesh%node_id)
-    call write_sets(file, '/sets/elements', model%element_sets, model%mesh%element_id)
-    call write_surfaces(file, model)
+    call file%make_group('/sets/nodes')
+    call file%make_group('/sets/elements')
+    call file%make_group('/sets/surfaces')
+    call add_all_sets(file, model)
     call file%make_group('/faces')
     call file%put('/faces/dam', merge(1, 0, record%skin%is_dam))
     call file%put('/faces/upstream', merge(1, 0, record%skin%is_upstream))
@@ -34,6 +37,35 @@ contains
       call write_joint(file, model, model%joints(j), record%joints(j))
     end do
   end subroutine write_model
+
+  !> Writes what differs from the model in the file, where a run goes on: the upward axis, the faces
+  !> of the dam, and sets and surfaces of new names. A checkpoint fixes all others.
+  subroutine renew_model(file, model, record)
+    type(hdf5_file), intent(inout) :: file
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record
+    integer :: j
+    call renew_integer(file, '/mesh', 'up', find_upward_axis(model%loads))
+    call add_all_sets(file, model)
+    call renew_integers(file, '/faces/dam', merge(1, 0, record%skin%is_dam))
+    call renew_integers(file, '/faces/upstream', merge(1, 0, record%skin%is_upstream))
+    call renew_integers(file, '/faces/downstream', merge(1, 0, record%skin%is_downstream))
+    do j = 1, size(model%joints)
+      associate (group => '/joints/'//link_name(model%joints(j)%name), faces => record%joints(j))
+        call renew_integers(file, group//'/upstream', merge(1, 0, faces%is_upstream))
+        call renew_integers(file, group//'/downstream', merge(1, 0, faces%is_downstream))
+      end associate
+    end do
+  end subroutine renew_model
+
+  !> Writes the sets and surfaces that are not in the file; their groups must exist.
+  subroutine add_all_sets(file, model)
+    type(hdf5_file), intent(inout) :: file
+    type(problem), intent(in) :: model
+    call add_sets(file, '/sets/nodes/', model%node_sets, model%mesh%node_id)
+    call add_sets(file, '/sets/elements/', model%element_sets, model%mesh%element_id)
+    call add_surfaces(file, model)
+  end subroutine add_all_sets
 
   !> Nodes, elements and materials.
   subroutine write_mesh(file, model)
@@ -62,32 +94,32 @@ contains
   end subroutine write_mesh
 
   !> Sets of nodes or elements, with the numbers of the deck.
-  subroutine write_sets(file, group, sets, id)
+  subroutine add_sets(file, group, sets, id)
     type(hdf5_file), intent(inout) :: file
-    character(*), intent(in) :: group
+    character(*), intent(in) :: group !< with '/' at its end
     type(named_set), intent(in) :: sets(:)
     integer, intent(in) :: id(:)
     integer :: i
-    call file%make_group(group)
     do i = 1, size(sets)
-      call file%put(group//'/'//link_name(sets(i)%name), id(sets(i)%members))
+      if (has_link(file, group//link_name(sets(i)%name))) cycle
+      call file%put(group//link_name(sets(i)%name), id(sets(i)%members))
     end do
-  end subroutine write_sets
+  end subroutine add_sets
 
   !> Surfaces: element and face S1..S6.
-  subroutine write_surfaces(file, model)
+  subroutine add_surfaces(file, model)
     type(hdf5_file), intent(inout) :: file
     type(problem), intent(in) :: model
     integer :: i
-    call file%make_group('/sets/surfaces')
     do i = 1, size(model%surfaces)
       associate (faces => model%surfaces(i))
+        if (has_link(file, '/sets/surfaces/'//link_name(faces%name))) cycle
         call file%put('/sets/surfaces/'//link_name(faces%name), &
                       transpose(reshape([model%mesh%element_id(faces%element), faces%face], &
                                         [size(faces%face), 2])))
       end associate
     end do
-  end subroutine write_surfaces
+  end subroutine add_surfaces
 
   !> The points of a joint.
   subroutine write_joint(file, model, joint, faces)

@@ -20,7 +20,7 @@ module write_hdf5
   use hdf5_files, only: hdf5_file
   use hdf5_tables, only: growing_table
   use hdf5_ledger, only: write_ledger
-  use hdf5_model, only: write_model
+  use hdf5_model, only: renew_model, write_model
   use hdf5_fields, only: put_field, put_joints
   use hdf5_points, only: write_points, add_points
   use file_system, only: link_name, file_name
@@ -49,6 +49,7 @@ module write_hdf5
     procedure :: save_position => save_hdf5
     procedure :: load_position => load_hdf5
     procedure :: start_undo
+    procedure :: renew => renew_hdf5
     procedure :: write_increment => write_data
     procedure :: write_modes => write_mode_data
     procedure :: write_envelopes => write_envelope_data
@@ -167,6 +168,16 @@ contains
     call self%file%start_undo(journal, number)
     if (self%file%has_failed) call raise_unwritten(error, journal)
   end subroutine start_undo
+
+  !> Writes what has changed in the model.
+  subroutine renew_hdf5(self, model, record, error)
+    class(hdf5_results), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(run_record), intent(in) :: record
+    type(error_type), allocatable, intent(out) :: error
+    call renew_model(self%file, model, record)
+    call self%flush_rows(error)
+  end subroutine renew_hdf5
 
   !> Writes the histories of every increment, and the fields requested now.
   subroutine write_data(self, model, now, record, error)

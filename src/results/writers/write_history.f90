@@ -19,6 +19,11 @@ module write_history
   private
   public :: history_files
 
+  !> Points whose distances from a node differ by less than this part of the least are equally far.
+  !> Their distances differ by round-off, 1e-16 times coordinates: less than 1e-9 while coordinates
+  !> are below 1e6 distances.
+  real(rk), parameter :: equal_part = 1.0e-9_rk
+
   type, extends(writer) :: history_files
     private
     type(history_file), allocatable :: files(:)
@@ -277,7 +282,8 @@ contains
     end do
   end subroutine choose_members
 
-  !> Points of a joint: the nearest to each named node, or all without named nodes.
+  !> Points of a joint: the nearest to each named node (of equally near points the first), or all
+  !> without named nodes.
   pure function points_of(model, request, joint) result(points)
     type(problem), intent(in) :: model
     type(print_request), intent(in) :: request
@@ -285,14 +291,15 @@ contains
     integer, allocatable :: points(:)
     integer :: p, i
     logical :: is_near(model%joints(joint)%num_points)
-    real(rk) :: here(3), distance(3, model%joints(joint)%num_points)
+    real(rk) :: here(3), distance(model%joints(joint)%num_points)
     is_near = .true.
     if (allocated(request%near_nodes)) is_near = size(request%near_nodes) == 0
     if (.not. all(is_near)) then
       do i = 1, size(request%near_nodes)
         here = model%mesh%x(:, request%near_nodes(i))
-        distance = model%joints(joint)%x - spread(here, 2, size(is_near))
-        is_near(minloc(sum(distance**2, dim=1), dim=1)) = .true.
+        distance = norm2(model%joints(joint)%x - spread(here, 2, size(is_near)), dim=1)
+        p = findloc(distance <= (1.0_rk + equal_part)*minval(distance), .true., dim=1)
+        is_near(p) = .true.
       end do
     end if
     points = pack([(p, p=1, size(is_near))], is_near)
