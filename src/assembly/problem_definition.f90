@@ -26,6 +26,7 @@ module problem_definition
     character(:), allocatable :: deck_file !< as given on the command line
     character(:), allocatable :: heading
     type(mesh_instance), allocatable :: instances(:) !< of parts; none in most decks
+    type(mesh_instance) :: outside !< what stands outside the instances
     type(file_path), allocatable :: inputs(:) !< all files that were read
     type(card_digest), allocatable :: cards(:) !< of the deck, without material tests
     type(fe_mesh) :: mesh

@@ -82,7 +82,10 @@ contains
           cycle
         end if
         associate (wanted => the_card%spec%parameters(j))
-          if (wanted%has_no_effect) then
+          if (is_refused(wanted)) then
+            call the_card%fault_parameter(faults, given%name, given%name//' is not available', &
+                                          wanted%instead)
+          else if (wanted%has_no_effect) then
             call the_card%ignore(faults, given%name//' has no effect here')
           else if (wanted%kind == kind_flag) then
             if (given%has_value) call the_card%fault_parameter( &
@@ -102,6 +105,12 @@ contains
     end do
   end subroutine check_given_parameters
 
+  !> Whether a parameter of other programs is refused, with any value.
+  pure logical function is_refused(wanted)
+    type(field), intent(in) :: wanted
+    is_refused = allocated(wanted%instead) .and. wanted%kind /= kind_choice
+  end function is_refused
+
   !> Reports an unknown parameter at the place of its name; a card that asks for output is read
   !> without it.
   subroutine fault_unknown_parameter(the_card, i, faults)
@@ -114,13 +123,17 @@ contains
     integer :: j
     list = ''
     allocate (names(num_parameters(the_card%spec)))
+    names = ''
     do j = 1, size(names)
-      names(j) = the_card%spec%parameters(j)%name
-      if (j > 1) list = list//', '
-      list = list//the_card%spec%parameters(j)%name
+      associate (known => the_card%spec%parameters(j))
+        if (is_refused(known)) cycle
+        names(j) = known%name
+        if (len(list) > 0) list = list//', '
+        list = list//known%name
+      end associate
     end do
-    if (size(names) == 0) list = 'no parameters'
-    if (size(names) > 1) list = 'one of '//list
+    if (len(list) == 0) list = 'no parameters'
+    if (index(list, ',') > 0) list = 'one of '//list
     associate (given => the_card%parameters(i))
       if (the_card%spec%asks_for_output) then
         nearest = nearest_word(given%name, names)

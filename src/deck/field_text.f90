@@ -24,6 +24,7 @@ contains
     if (len(text) > 0) text = text//', '
     text = text//kind_in_words(described)
     if (len(text_or_nothing(described%unit)) > 0) text = text//' ['//described%unit//']'
+    if (len(text_or_nothing(described%instead)) > 0) text = text//'; '//described%instead
   end function expected_in
 
   !> 'a number > 0', 'an integer from 1 to 3', 'one of A, B'.

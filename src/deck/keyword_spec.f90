@@ -38,6 +38,8 @@ module keyword_spec
     logical :: is_checked_later = .false. !< the handler checks the value
     logical :: rules_lines = .false. !< an unknown choice leaves open what the data lines hold
     logical :: has_no_effect = .false. !< of other programs, with any value; noted as ignored input
+    character(:), allocatable :: instead !< of other programs: what to take in place of a parameter
+    !< that is refused, or of a value beside `choices`
   end type field
 
   !> What a keyword takes besides where one of its parameters has a certain value: the constants of

@@ -18,7 +18,7 @@ module keyword_catalogue
   use keywords_initial, only: describe_initial_conditions, read_initial_conditions
   use keywords_interface, only: describe_interface, read_interface
   use keywords_joint, only: describe_joint, describe_joint_law, read_joint, read_joint_law
-  use keywords_other, only: add_ignored_keywords, add_refused_keywords
+  use keywords_other, only: add_ignored_keywords
   use keywords_loads, only: describe_cload, describe_dload, describe_dsload, read_cload, &
                             read_dload, read_dsload
   use keywords_material, only: describe_density, describe_material, describe_material_damping, &
@@ -31,6 +31,7 @@ module keyword_catalogue
                              describe_preprint, read_envelope, read_files, read_fields, read_output
   use keywords_print, only: describe_el_print, describe_joint_print, describe_node_print, &
                             read_el_print, read_joint_print, read_node_print
+  use keywords_refused, only: add_refused_keywords
   use keywords_reservoir, only: describe_reservoir, read_reservoir
   use keywords_section, only: describe_solid_section, read_solid_section
   use keywords_sets, only: describe_elset, describe_nset, describe_surface, read_elset, &

@@ -158,8 +158,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     call drop_inner_quotes(model%cards)
     call leave_out(model%cards, model%faces, faults)
-    call flatten(model%cards, list%specs, model%outside, model%problem%instances, faults)
-    call choose_element(model%cards, model%options%c3d8, size(model%problem%instances) > 0, faults)
+    associate (problem => model%problem)
+      call flatten(model%cards, list%specs, problem%outside, problem%instances, faults)
+      call choose_element(model%cards, model%options%c3d8, size(problem%instances) > 0, faults)
+    end associate
   end subroutine make_flat
 
   !> Finds the keyword of each card and checks its place.

@@ -33,6 +33,7 @@ set(sources
   draft/equation_lists.f90
   draft/keyword_handler.f90
   draft/keywords_other.f90
+  draft/keywords_refused.f90
   draft/model_draft.f90
   draft/named_things.f90
   draft/other_step_words.f90

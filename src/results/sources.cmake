@@ -54,6 +54,7 @@ set(sources
   summary/joint_json.f90
   summary/machine_json.f90
   summary/material_summary.f90
+  summary/model_json.f90
   summary/run_progress.f90
   summary/run_summaries.f90
   summary/summary_archive.f90

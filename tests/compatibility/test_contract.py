@@ -48,6 +48,9 @@ READ = [
     ("boundary, encastre", "block", {"BASE, 1, 3": "BASE, ENCASTRE"}),
     ("boundary, pinned", "block", {"BASE, 1, 3": "BASE, Pinned"}),
     ("boundary, symmetry", "block", {"BASE, 1, 3": "BASE, XSYMM\nBASE, YSYMM\nBASE, ZSYMM"}),
+    ("boundary, antisymmetry", "block", {"BASE, 1, 3": "BASE, XASYMM\nBASE, ZASYMM"}),
+    ("static, no first increment", "block", {"*STATIC": "*STATIC\n, 1., , 0.5"}),
+    ("nodes, rectangular coordinates", "block", {"*NODE, ": "*NODE, SYSTEM=R, "}),
     (
         "boundary, a set of such a name",
         "block",

@@ -122,6 +122,18 @@ def test_weight_of_instances_is_carried_by_the_base(keyway):
     ]
 
 
+def test_what_stands_outside_the_instances_is_listed_without_a_name(keyway):
+    """Nodes of the assembly share numbers with those of the parts; the first *NODE is the cause."""
+    nodes = "*Node, nset=Point\n1, 0., 0., 9.\n2, 0., 1., 9.\n"
+    deck = assembly(0.0).replace("*Tie,", nodes + "*Tie,")
+    run = keyway(deck)
+    assert run.json["instances"][2:] == [
+        {"name": "", "part": "", "nodes_added": 200, "elements_added": 0}
+    ]
+    line = deck.splitlines().index("*Node, nset=Point") + 1
+    assert f":{line}: *NODE: warning: instances share numbers; results add 200" in run.stderr
+
+
 def test_instances_with_blanks_in_their_names(keyway):
     """Abaqus quotes the name of the instance alone, in parameters as in data lines."""
     text = assembly(30.0).replace("*Node File", "*Node Print, nset=Block-1.Base\nRF\n*Node File")

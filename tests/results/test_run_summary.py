@@ -95,7 +95,9 @@ def test_a_run_that_stops_has_the_closing_lines_in_its_log(keyway):
     deck = deck.replace("INC=10000", "INC=50")
     run = keyway(deck, files={"sliding_block_base.txt": motion}, name="short", code=1)
     log = (run.folder / "short.log").read_text(encoding="utf-8")
-    assert "has not ended after 50 increments" in log
+    line = next(line for line in log.splitlines() if "has not ended after 50 increments" in line)
+    assert line.endswith(" s: raise INC of *STEP")
+    assert f"{line} [increments-used-up]" in run.stderr
     assert log.index("has not ended") < log.index("largest displacement")
 
 

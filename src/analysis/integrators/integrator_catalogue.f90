@@ -2,6 +2,7 @@
 !> the maker. Keywords, help and the step loop read this list. A new integrator is a file of its
 !> own, and here its `use` and its line in `all_integrators`.
 module integrator_catalogue
+  use nearest_words, only: nearest_word
   use step_plan, only: step_procedure
   use integrator_type, only: integrator
   use static_integrator, only: make_static
@@ -10,7 +11,7 @@ module integrator_catalogue
   use frequency_integrator, only: make_frequency
   implicit none
   private
-  public :: procedure_named, list_schemes, list_procedures, make_integrator
+  public :: procedure_named, is_near_procedure, list_schemes, list_procedures, make_integrator
 
   abstract interface
     !> Makes an integrator that has no step yet.
@@ -59,6 +60,18 @@ contains
       return
     end do
   end function procedure_named
+
+  !> Whether a keyword is meant for a procedure: a misspelt one, or one with words behind it.
+  logical function is_near_procedure(name) result(is_near)
+    character(*), intent(in) :: name !< keyword without its star
+    type(entry), allocatable :: list(:)
+    integer :: i
+    list = all_integrators()
+    is_near = len(nearest_word(name, list%procedure%name)) > 0
+    do i = 1, size(list)
+      if (index(name, trim(list(i)%procedure%name)) == 1) is_near = .true.
+    end do
+  end function is_near_procedure
 
   !> The schemes of a procedure, as choices of a keyword; the first is the default.
   function list_schemes(name) result(text)

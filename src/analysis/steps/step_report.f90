@@ -6,6 +6,7 @@ module step_report
   use step_plan, only: step
   use analysis_state, only: state
   use increment_listener, only: listener
+  use instance_list, only: own_name_of_node
   use equilibrium, only: balance_outcome
   use step_loads, only: step_time
   use step_system, only: dam_system
@@ -52,7 +53,8 @@ contains
     if (allocated(error) .or. now%is_last_of_step) return
     if (now%increment >= plan%max_increments) then
       call raise(error, "step '"//plan%name//"' has not ended after "// &
-                 count_text(plan%max_increments)//' increments (*STEP, INC)')
+                 count_text(plan%max_increments)//' increments, at '//as_text(now%step_time)// &
+                 ' of '//as_text(plan%duration)//' s: raise INC of *STEP')
     end if
   end subroutine close_increment
 
@@ -105,7 +107,8 @@ contains
     text = ''
     if (outcome%worst_unknown == 0) return
     node = system%numbers%node(outcome%worst_unknown)
-    text = '; largest at node '//count_text(model%mesh%node_id(node))//' at '// &
+    text = '; largest at node '//count_text(model%mesh%node_id(node))// &
+           own_name_of_node(model%outside, model%instances, model%mesh%node_id(node))//' at '// &
            place_text(model%mesh%x(:, node))
     if (.not. model%steps(step)%procedure%is_static()) return
     text = text//' (beyond its peak load a cracking structure needs prescribed displacements, '// &

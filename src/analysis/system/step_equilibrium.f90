@@ -2,6 +2,7 @@
 module step_equilibrium
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
+  use instance_list, only: own_name_of_node
   use problem_definition, only: problem
   use step_plan, only: step
   use global_vectors, only: multiply
@@ -107,11 +108,14 @@ contains
     class(equilibrium_solver), intent(inout) :: balance
     type(error_type), allocatable, intent(out) :: error
     type(error_type), allocatable :: cause
+    integer :: node
     call balance%prepare_matrix(system%matrix, values, weight, model%joints, system%operator, cause)
     if (.not. allocated(cause)) return
     if (balance%factor%failed_unknown > 0) then
+      node = system%numbers%node(balance%factor%failed_unknown)
       call raise(error, 'the stiffness matrix is singular at '// &
                  system%numbers%describe(balance%factor%failed_unknown, model%mesh%node_id)// &
+                 own_name_of_node(model%outside, model%instances, model%mesh%node_id(node))// &
                  ': a part of the model is free to move; add supports, or connect the part by '// &
                  'common nodes, a tie or a joint', cause%exit_code)
     else

@@ -97,13 +97,21 @@ contains
                   'keyway -j 16 dam.inp', &
                   'keyway -j 1 dam.inp')
     call add_page_of_umat(list)
+    call list%add('increments-used-up', &
+                  'has not ended after', &
+                  'Every increment has converged, but the step has had as many increments as '// &
+                  'INC of *STEP allows before its duration was over. The results up to there '// &
+                  'are kept and can be read.', &
+                  'Raise INC: the duration over the size of an increment, and more where '// &
+                  'increments are cut. Without INC a step may have 100000. Larger increments '// &
+                  'need fewer.', &
+                  '*STEP, INC=2; *STATIC; 0.1, 1.', &
+                  '*STEP, INC=100; *STATIC; 0.1, 1.')
     call list%add('no-equilibrium', &
                   'no equilibrium|penetration of a contact|does not converge|did not '// &
-                  'converge|no initial acceleration|time increment|smallest increment|has not '// &
-                  'ended after', &
+                  'converge|no initial acceleration|time increment|smallest increment', &
                   'The iteration of an increment found no equilibrium, also after the '// &
-                  'increment was cut, or the number of increments is used up. The results up '// &
-                  'to there are kept and can be read.', &
+                  'increment was cut. The results up to there are kept and can be read.', &
                   'Look at the place that the message names and at the last fields. Often a '// &
                   'block has become free, a load is beyond what the model bears, or the unit '// &
                   'of a stiffness is wrong. Smaller increments, and more of them (*STEP, INC), '// &

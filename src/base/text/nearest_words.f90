@@ -28,13 +28,17 @@ contains
     end do
   end function nearest_word
 
-  !> As `nearest_word`, for candidates in one text: 'A | B | C'.
+  !> As `nearest_word`, for the words of the program in one text: 'A | B | C'. Words of two letters
+  !> have no near ones: one change of them gives another meaning (ON and NO, ME and PE).
   pure function nearest_choice(word, choices) result(nearest)
     character(*), intent(in) :: word !< as written
     character(*), intent(in) :: choices !< known words
     character(:), allocatable :: nearest
     character(len(choices)) :: candidates(count_choices(choices))
+    integer, parameter :: longest_code = 2
     integer :: i, first, length
+    nearest = ''
+    if (len_trim(word) <= longest_code) return
     first = 1
     do i = 1, size(candidates)
       length = index(choices(first:)//separator, separator) - 1

@@ -33,7 +33,7 @@ module assembly_structure
   type :: part_instance
     character(:), allocatable :: name !< upper case, '' outside
     character(:), allocatable :: part !< upper case, '' outside
-    integer :: card = 0 !< *INSTANCE
+    integer :: card = 0 !< *INSTANCE; outside, the first *NODE or *ELEMENT
     type(placement) :: place
     type(number_range) :: nodes, elements
     logical :: is_repeat = .false. !< an earlier instance has the same part

@@ -89,6 +89,7 @@ contains
     one%part = instance%part
     one%first_node = instance%nodes%lowest
     one%last_node = instance%nodes%highest
+    one%has_members = max(instance%nodes%highest, instance%elements%highest) > 0
     one%nodes_added = instance%nodes%offset
     one%elements_added = instance%elements%offset
   end function listed

@@ -23,9 +23,11 @@ contains
     do i = 1, structure%num_cards
       associate (this => cards(structure%cards(i)%card), &
                  owner => structure%instances(structure%cards(i)%owner))
+        if (this%keyword /= 'NODE' .and. this%keyword /= 'ELEMENT') cycle
+        if (owner%card == 0) owner%card = structure%cards(i)%card
         if (this%keyword == 'NODE') then
           call widen(this, spread(.true., 1, this%num_lines), owner%nodes)
-        else if (this%keyword == 'ELEMENT') then
+        else
           call widen(this, begins_element(this), owner%elements)
         end if
       end associate
@@ -93,7 +95,7 @@ contains
       num_moved = num_moved + 1
       offset = num_moved*unit
       if (offset + ranges(i)%highest > huge(1)) then
-        call cards(max(1, structure%instances(i)%card))%fault( &
+        call cards(structure%instances(i)%card)%fault( &
           faults, 'numbers up to '//as_text(ranges(i)%highest)//' leave no room for those of '// &
           'all instances', 'parts with smaller numbers')
         return
@@ -102,7 +104,7 @@ contains
     end do
   end subroutine choose_offsets
 
-  !> Says once which numbers have changed.
+  !> Says once which numbers have changed, at the first card whose numbers have.
   subroutine warn_of_offsets(cards, structure, faults)
     type(card), intent(in) :: cards(:)
     type(model_structure), intent(in) :: structure
@@ -125,7 +127,7 @@ contains
     end do
     if (num_moved == 0) return
     if (num_moved > most_named) list = list//'; and '//as_text(num_moved - most_named)//' more'
-    call cards(max(1, structure%instances(first)%card))%warn( &
+    call cards(structure%instances(first)%card)%warn( &
       faults, 'instances share numbers; results add '//list//' (job.json, instances, has all)')
   end subroutine warn_of_offsets
 

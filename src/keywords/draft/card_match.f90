@@ -3,7 +3,7 @@ module card_match
   use card_check, only: check_given_parameters, longest_name
   use deck_card, only: card
   use diagnostics, only: diagnostic_list, severity_ignored
-  use keyword_spec, only: find_spec, keyword, later, refused, without_effect
+  use keyword_spec, only: find_spec, keyword, later, refused, spec_of_variant, without_effect
   use nearest_words, only: nearest_word
   implicit none
   private
@@ -56,14 +56,15 @@ contains
     end do
   end subroutine note_odd_parameters
 
-  !> Reports an unknown keyword, with the known keyword of the nearest spelling.
+  !> Reports an unknown keyword, with the known keyword of the nearest spelling. A keyword that is
+  !> refused is no suggestion.
   subroutine fault_unknown(the_card, specs, faults)
     type(card), intent(in) :: the_card
     type(keyword), intent(in) :: specs(:)
     type(diagnostic_list), intent(inout) :: faults
     character(longest_name) :: names(size(specs))
     character(:), allocatable :: nearest
-    integer :: i
+    integer :: i, found
     if (len(the_card%keyword) == 0) then
       call the_card%fault(faults, "no keyword after the '*'", "a keyword, or '**' for a comment")
     else if (index(the_card%keyword, '=') > 0) then
@@ -74,25 +75,42 @@ contains
         names(i) = specs(i)%name
       end do
       nearest = nearest_word(the_card%keyword, names)
-      if (len(nearest) == 0) nearest = with_comma(the_card%keyword, names)
+      found = find_spec(specs, nearest)
+      if (found > 0) then
+        if (any(specs(found)%status == [later, refused])) nearest = ''
+      end if
+      if (len(nearest) == 0) nearest = with_comma(the_card%keyword, specs)
       if (len(nearest) > 0) nearest = '*'//nearest
       call the_card%fault(faults, 'unknown keyword', nearest=nearest)
     end if
   end subroutine fault_unknown
 
-  !> 'DYNAMIC, DIRECT' for 'DYNAMIC DIRECT': a keyword and words behind it without a comma. ''
-  !> where the text begins with no keyword.
-  pure function with_comma(text, names) result(better)
+  !> 'DYNAMIC, DIRECT' for 'DYNAMIC DIRECT': a keyword and one of its parameters without a comma.
+  !> '' for another text.
+  pure function with_comma(text, specs) result(better)
     character(*), intent(in) :: text
-    character(*), intent(in) :: names(:) !< known keywords
+    type(keyword), intent(in) :: specs(:)
     character(:), allocatable :: better
-    integer :: i, longest
+    integer :: i, length
     better = ''
-    longest = 0
-    do i = 1, size(names)
-      if (len_trim(names(i)) <= longest .or. index(text, trim(names(i))//' ') /= 1) cycle
-      longest = len_trim(names(i))
-      better = text(:longest)//','//text(longest + 1:)
+    do i = 1, size(specs)
+      if (any(specs(i)%status == [later, refused])) cycle
+      length = len(specs(i)%name)
+      if (index(text, specs(i)%name//' ') /= 1) cycle
+      if (has_parameter(specs(i), text(length + 2:))) better = text(:length)//','//text(length + 1:)
     end do
   end function with_comma
+
+  !> Whether a keyword, or one of its variants, has a parameter of this name.
+  pure logical function has_parameter(spec, name)
+    type(keyword), intent(in) :: spec
+    character(*), intent(in) :: name !< upper case
+    type(keyword) :: whole
+    integer :: i
+    has_parameter = .false.
+    if (.not. allocated(spec%parameters)) return
+    whole = spec
+    if (allocated(spec%variants)) whole = spec_of_variant(spec, '')
+    has_parameter = any([(whole%parameters(i)%name == name, i=1, size(whole%parameters))])
+  end function has_parameter
 end module card_match

@@ -10,7 +10,6 @@ module model_draft
   use equation_lists, only: equation_list
   use face_elements, only: face_element_list
   use guest_type, only: guest, guest_slot
-  use instance_list, only: mesh_instance
   use joint_law, only: traction_law
   use id_map, only: position_table
   use kinds, only: rk
@@ -130,7 +129,6 @@ module model_draft
     type(position_table) :: node_position, element_position !< by the user's ids
     type(origin), allocatable :: node_origin(:), element_origin(:)
     type(set_list) :: node_sets, element_sets
-    type(mesh_instance) :: outside !< what stands outside the instances of parts
     type(face_element_list) :: faces !< elements of faces beside the solids
     ! In use of `problem` while the deck is read; the lists have room for all cards.
     integer :: num_surfaces = 0, num_amplitudes = 0, num_materials = 0

@@ -1,14 +1,17 @@
-!> Parameters of Abaqus on *STEP, *STATIC and *DYNAMIC whose usual values are what happens here.
+!> Parameters of Abaqus on *STEP, *STATIC and *DYNAMIC whose usual values are what happens here, and
+!> procedures of other programs.
 module other_step_words
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use integrator_catalogue, only: is_near_procedure
   use keyword_spec, only: field, keyword, kind_choice
   use keywords_other, only: add_idle_parameters
+  use keywords_refused, only: is_refused_procedure
   use model_draft, only: draft
   implicit none
   private
   public :: add_words_of_step, add_words_of_static, add_words_of_dynamic
-  public :: check_application, check_step_amplitude
+  public :: check_application, check_step_amplitude, has_faulty_procedure
 
 contains
 
@@ -79,4 +82,17 @@ contains
       end if
     end associate
   end subroutine check_step_amplitude
+
+  !> Whether a card of the step, whose fault is reported, is a procedure: a refused one, or one that
+  !> is misspelt.
+  logical function has_faulty_procedure(model)
+    type(draft), intent(in) :: model
+    integer :: i
+    has_faulty_procedure = .false.
+    do i = model%step_origin%card, model%current
+      associate (name => model%cards(i)%keyword)
+        if (is_refused_procedure(name) .or. is_near_procedure(name)) has_faulty_procedure = .true.
+      end associate
+    end do
+  end function has_faulty_procedure
 end module other_step_words

@@ -182,7 +182,8 @@ contains
     character(:), allocatable :: expected
     integer :: id, found
     logical :: is_node
-    call find_flat_node(model%outside, model%problem%instances, word(reader, 1), id, is_node)
+    call find_flat_node(model%problem%outside, model%problem%instances, word(reader, 1), id, &
+                        is_node)
     if (is_node) then
       found = model%node_position%find(id)
       nodes = pack([found], [found > 0])

@@ -16,7 +16,7 @@ module dload_labels
   implicit none
   private
   public :: dload_label, num_labels, list_labels, find_label, choices_of_labels, labels_in_words, &
-            meaning_of_labels, elements_in_words, pattern_of
+            meaning_of_labels, elements_in_words, in_place_of, pattern_of
 
   type :: dload_label
     character(:), allocatable :: name !< without the number of a face
@@ -121,6 +121,27 @@ contains
       if (labels(i)%num_faces > 0) text = text//'..'//word_of(labels(i), labels(i)%num_faces)
     end do
   end function labels_in_words
+
+  !> What to take in place of a label of other programs; '' for another word.
+  pure function in_place_of(word) result(text)
+    character(*), intent(in) :: word !< upper case
+    character(:), allocatable :: text
+    character(*), parameter :: force = 'GRAV with the force per volume over the density as g'
+    select case (word)
+    case ('BX')
+      text = force//', along 1., 0., 0.'
+    case ('BY')
+      text = force//', along 0., 1., 0.'
+    case ('BZ')
+      text = force//', along 0., 0., 1.'
+    case ('BXNU', 'BYNU', 'BZNU')
+      text = force//', and AMPLITUDE for its history'
+    case ('CENTRIF', 'ROTA', 'CORIO')
+      text = 'GRAV, P1..P6 or HP1..HP6: nothing rotates'
+    case default
+      text = ''
+    end select
+  end function in_place_of
 
   !> The meanings of all labels.
   function meaning_of_labels() result(text)

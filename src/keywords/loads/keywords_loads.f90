@@ -4,13 +4,13 @@ module keywords_loads
   use deck_card, only: card
   use decimal_commas, only: with_hint_of_point
   use diagnostics, only: diagnostic_list
-  use dload_labels, only: choices_of_labels, dload_label, find_label, labels_in_words, &
-                          list_labels, meaning_of_labels, num_labels, pattern_of
+  use dload_labels, only: choices_of_labels, dload_label, find_label, in_place_of, &
+                          labels_in_words, list_labels, meaning_of_labels, num_labels, pattern_of
   use element_catalogue, only: is_solid
   use enter_load, only: put_load
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
-  use keywords_other, only: add_idle_parameters
+  use keywords_other, only: add_idle_parameters, add_refused_parameter, shifted_history
   use kinds, only: rk
   use load_pressure, only: pressure_load
   use model_draft, only: draft
@@ -33,6 +33,7 @@ contains
                     default='MOD', choices='MOD | NEW'), &
               field('AMPLITUDE', kind_word, 'history that scales the loads')])
     call add_idle_parameters(spec, ['FOLLOWER          ', 'CONSTANT RESULTANT'])
+    call add_refused_parameter(spec, 'TIME DELAY', shifted_history)
     spec%family = 'load'
     spec%place = 'step'
     spec%fewest_lines = 1
@@ -69,7 +70,8 @@ contains
       associate (table => model%point_forces, dof => this%integer_at(line, 2))
         if (any(table%is_new(dof, nodes) .and. table%history(dof, nodes) /= history)) then
           call this%fault_at(faults, line, 1, 'a force with another amplitude acts there', &
-                             'one amplitude for the forces of a degree of freedom in a step')
+                             'one amplitude for the forces of a degree of freedom in a step: '// &
+                             'an *AMPLITUDE with the sum of these histories, and the force 1')
         end if
         call table%add(nodes, dof, this%real_at(line, 3), history)
       end associate
@@ -159,13 +161,18 @@ contains
     type(dload_label), intent(in) :: labels(:)
     integer, intent(out) :: found !< position of the label, 0 when there is none
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: choices
+    character(:), allocatable :: choices, instead
     integer :: i
     found = find_label(labels, this%word_at(line, 2))
     if (found == 0) then
       choices = choices_of_labels()
-      call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
-                         labels_in_words(), nearest_choice(this%word_at(line, 2), choices))
+      instead = in_place_of(this%word_at(line, 2))
+      if (len(instead) == 0) then
+        call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
+                           labels_in_words(), nearest_choice(this%word_at(line, 2), choices))
+      else
+        call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", instead)
+      end if
       return
     end if
     associate (label => labels(found))

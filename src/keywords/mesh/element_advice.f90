@@ -9,6 +9,10 @@ module element_advice
   character(*), parameter :: first_order = hexahedra//'with elements of the first order '// &
                              '(Abaqus/CAE: Linear; Gmsh: Mesh.ElementOrder = 1)'
   character(*), parameter :: solids = 'solids C3D8, C3D8B, C3D8I or C3D8R in their place'
+  character(*), parameter :: water = '*RESERVOIR in place of elements of water, with ADDED '// &
+                             'MASS=WESTERGAARD for its inertia'
+  character(*), parameter :: rock = 'solids of rock without a *DENSITY in their place, held at '// &
+                             'their outer faces'
 
 contains
 
@@ -28,12 +32,20 @@ contains
     call take('C3D5', 'a pyramid', hexahedra//'without pyramids')
     call take('C3D6', 'a wedge', 'C3D8 with the nodes 1, 2, 3, 3, 4, 5, 6, 6 of the wedge')
     call take('C3D8', 'another hexahedron of 8 nodes', 'C3D8, C3D8B, C3D8I or C3D8R')
+    call take('AC', 'an acoustic element', water)
+    call take('CIN', 'an infinite element', rock)
+    call take('F3D', 'a fluid element', water)
+    call take('FC3D', 'a fluid element', water)
+    call take('EC3D', 'an element of a flowing material', 'C3D8, C3D8B, C3D8I or C3D8R')
+    call take('Q3D', 'an element with temperatures and currents', &
+              'C3D8 and temperatures of nodes, *TEMPERATURE')
     call take('DC3D', 'an element of heat alone', 'C3D8 and temperatures of nodes, *TEMPERATURE')
     call take('T3D', 'a truss', solids//'; bars of a mesh without a section are left out')
     call take('CPS', 'an element in a plane', solids)
     call take('CPE', 'an element in a plane', solids)
     call take('CAX', 'an axisymmetric element', solids)
     call take('M3D', 'a membrane', solids)
+    call take('SC', 'a continuum shell', solids)
     call take('SPRING', 'a spring', '*JOINT LAW with KN and KT, or solids')
     call take('DASHPO', 'a dashpot', '*DAMPING of a material or of the step')
     call take('MASS', 'a mass', 'solids with a *DENSITY in its place')

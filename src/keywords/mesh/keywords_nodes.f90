@@ -2,7 +2,8 @@
 module keywords_nodes
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: keyword, field, kind_integer, kind_real, kind_text, kind_word
+  use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_text, &
+                          kind_word
   use kinds, only: rk
   use model_draft, only: draft, origin
   implicit none
@@ -66,7 +67,10 @@ contains
     spec%example = '*NODE, NSET=ALL'//nl//'1, 0., 0., 0.'//nl//'2, 10., 0., 0.'
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &
-              field('NSET', kind_word, 'a node set to which these nodes are added')])
+              field('NSET', kind_word, 'a node set to which these nodes are added'), &
+              field('SYSTEM', kind_choice, 'of Abaqus: rectangular coordinates', default='R', &
+                    choices='R', instead='for cylinders and spheres, coordinates along the '// &
+                    'axes of the model')])
     allocate (spec%columns, source=[ &
               field('id', kind_integer, 'number of the node', is_required=.true., &
                     lowest=1.0_rk), &

@@ -32,6 +32,17 @@ module card_fields
                               synonym('NT', 'TEMP'), synonym('NT11', 'TEMP'), &
                               synonym('SENER', 'ENER')]
 
+  !> A word of another program that is no field, and what to take for it.
+  type :: missing_field
+    character(7) :: word
+    character(24) :: instead
+  end type missing_field
+
+  type(missing_field), parameter :: missing_fields(*) = [ &
+                                    missing_field('ME', 'E less THE'), &
+                                    missing_field('EE', 'E less THE and PE'), &
+                                    missing_field('CEEQ', 'none: there is no creep')]
+
 contains
 
   !> Each field that the card names, once. Without data lines they are `default`.
@@ -51,19 +62,33 @@ contains
       word = this%word_at(reader%line, reader%field)
       if (.not. is_among(own_word(word), choices)) then
         unknown = unknown//', '//word
-        if (len(nearest) == 0) nearest = nearest_choice(word, choices)
+        if (len(nearest) == 0) nearest = way_out(word, choices)
       else if (.not. any(fields == own_word(word))) then
         fields = [character(field_name_length) :: fields, own_word(word)]
       end if
     end do
     if (len(unknown) > 0) then
-      if (len(nearest) > 0) nearest = "; did you mean '"//nearest//"'?"
       call this%ignore(faults, 'not written: '//unknown(3:)//'; expected '// &
                        with_commas(choices)//nearest)
     else if (size(fields) == 0 .and. len(default) > 0) then
       fields = [character(field_name_length) :: default]
     end if
   end subroutine take_fields
+
+  !> What to take for a word that is no field: '; for ME: E less THE', or a field of nearly the same
+  !> spelling; '' for none.
+  pure function way_out(word, choices) result(text)
+    character(*), intent(in) :: word, choices
+    character(:), allocatable :: text
+    integer :: i
+    do i = 1, size(missing_fields)
+      if (missing_fields(i)%word /= word) cycle
+      text = '; for '//word//': '//trim(missing_fields(i)%instead)
+      return
+    end do
+    text = nearest_choice(word, choices)
+    if (len(text) > 0) text = "; did you mean '"//text//"'?"
+  end function way_out
 
   !> Our word for a field.
   pure function own_word(word) result(own)

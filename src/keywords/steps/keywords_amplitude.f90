@@ -6,7 +6,7 @@ module keywords_amplitude
   use deck_file, only: path_of_named
   use history_file, only: number_file, read_at2_header, read_numbers
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_text, kind_word
-  use keywords_other, only: add_idle_parameters
+  use keywords_other, only: add_idle_parameters, add_refused_parameter
   use kinds, only: rk
   use model_draft, only: draft
   use record_units, only: choices_of_units, factor_beside_scale, record_header, settle_unit
@@ -45,13 +45,18 @@ contains
                     'turned by the unit that its header names', choices=choices_of_units), &
               field('SCALE', kind_real, 'factor of all values', '', '1'), &
               field('DEFINITION', kind_choice, 'of Abaqus: pairs, or values every FIXED '// &
-                    'INTERVAL', default='TABULAR', choices=by_pairs//' | '//by_interval), &
+                    'INTERVAL', default='TABULAR', choices=by_pairs//' | '//by_interval, &
+                    rules_lines=.true.), &
               field('FIXED INTERVAL', kind_real, 'time between values that are EQUALLY SPACED', &
                     's', lowest=0.0_rk, excludes_lowest=.true.), &
               field('BEGIN', kind_real, 'time of the first of them', 's', '0'), &
               field('VALUE', kind_choice, 'of Abaqus: factors of the loads', default='RELATIVE', &
                     choices='RELATIVE')])
+    spec%parameters(8)%instead = 'for any other history, such as PERIODIC or SMOOTH STEP, '// &
+                                 'its points as a table'
     call add_idle_parameters(spec, ['SMOOTH'])
+    call add_refused_parameter(spec, 'SHIFTX', 'the shift added to the times of the table')
+    call add_refused_parameter(spec, 'SHIFTY', 'the shift added to the values of the table')
     allocate (spec%columns, source=[ &
               field('time', kind_real, 'time (or, with VALUES, a value)', 's'), &
               field('value', kind_real, 'value at that time')])

@@ -2,8 +2,10 @@
 module keywords_boundary
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
+  use field_text, only: with_commas
   use keyword_spec, only: keyword, field, kind_choice, kind_integer, kind_real, kind_reference, &
                           kind_word
+  use keywords_other, only: add_refused_parameter, shifted_history
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: find_amplitude, nodes_at
@@ -16,7 +18,8 @@ module keywords_boundary
 
   character, parameter :: nl = new_line('a')
   character(*), parameter :: types = 'DISPLACEMENT | ACCELERATION'
-  character(*), parameter :: support_names = 'ENCASTRE | PINNED | XSYMM | YSYMM | ZSYMM'
+  character(*), parameter :: support_names = 'ENCASTRE | PINNED | XSYMM | YSYMM | ZSYMM | '// &
+                             'XASYMM | YASYMM | ZASYMM'
 
 contains
 
@@ -27,8 +30,9 @@ contains
     spec%place = 'anywhere'
     spec%meaning = 'Supports: fix degrees of freedom 1 to 3 or prescribe their displacement. '// &
                    'One dof only: leave the last out. Or a name in place of the dofs: '// &
-                   'ENCASTRE, PINNED (1-3), XSYMM (1), YSYMM (2), ZSYMM (3). Before the first '// &
-                   'step the value is zero.'
+                   'ENCASTRE, PINNED (1-3), XSYMM (1), YSYMM (2), ZSYMM (3), antisymmetry '// &
+                   'XASYMM (2, 3), YASYMM (1, 3), ZASYMM (1, 2). Before the first step the '// &
+                   'value is zero.'
     spec%example = '*BOUNDARY'//nl//'BASE, 1, 3'//nl//'CREST, 2, 2, 0.01'//nl//'SIDE, YSYMM'
     spec%fewest_lines = 1
     spec%new_clears = .true.
@@ -42,6 +46,8 @@ contains
                     'OP=NEW ends it, and so do displacements of all these supports in a later '// &
                     'step', &
                     default='DISPLACEMENT', choices=types, is_checked_later=.true.)])
+    call add_refused_parameter(spec, 'FIXED', 'the displacement that was reached, as value')
+    call add_refused_parameter(spec, 'TIME DELAY', shifted_history)
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &
@@ -56,8 +62,8 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer, allocatable :: nodes(:)
-    integer :: line, dof, first, last, history
+    integer, allocatable :: nodes(:), dofs(:)
+    integer :: line, i, history
     real(rk) :: value
     call find_amplitude(this, model, faults, history)
     call check_type(this, model, faults)
@@ -67,17 +73,17 @@ contains
     end if
     do line = 1, this%num_lines
       call nodes_at(this, line, 1, model, faults, nodes)
-      call read_dofs(this, line, faults, first, last)
+      call read_dofs(this, line, faults, dofs)
       call read_value(this, line, model%is_in_step, faults, value)
       if (this%word('TYPE') == 'ACCELERATION') then
-        do dof = first, last
-          call note_acceleration(this, line, nodes, dof, value, history, model, faults)
+        do i = 1, size(dofs)
+          call note_acceleration(this, line, nodes, dofs(i), value, history, model, faults)
         end do
         cycle
       end if
-      call warn_of_second_value(this, line, nodes, [first, last], value, history, model, faults)
-      do dof = first, last
-        call model%supports%put(nodes, dof, value, history)
+      call warn_of_second_value(this, line, nodes, dofs, value, history, model, faults)
+      do i = 1, size(dofs)
+        call model%supports%put(nodes, dofs(i), value, history)
       end do
     end do
   end subroutine read_boundary
@@ -116,43 +122,42 @@ contains
   subroutine warn_of_second_value(this, line, nodes, dofs, value, history, model, faults)
     type(card), intent(in) :: this
     integer, intent(in) :: line, nodes(:)
-    integer, intent(in) :: dofs(2) !< the first and the last
+    integer, intent(in) :: dofs(:)
     real(rk), intent(in) :: value !< [m]
     integer, intent(in) :: history !< amplitude, 0 for none
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: dof, i
+    integer :: d, i
     associate (table => model%supports)
-      do dof = dofs(1), dofs(2)
+      do d = 1, size(dofs)
         do i = 1, size(nodes)
-          if (.not. table%is_new(dof, nodes(i))) cycle
-          if (abs(table%value(dof, nodes(i)) - value) <= 0.0_rk .and. &
-              (table%history(dof, nodes(i)) == history .or. abs(value) <= 0.0_rk)) cycle
+          if (.not. table%is_new(dofs(d), nodes(i))) cycle
+          if (abs(table%value(dofs(d), nodes(i)) - value) <= 0.0_rk .and. &
+              (table%history(dofs(d), nodes(i)) == history .or. abs(value) <= 0.0_rk)) cycle
           call this%warn_at(faults, line, 1, 'node '// &
                             as_text(model%problem%mesh%node_id(nodes(i)))//' already '// &
-                            'has the displacement '//as_text(table%value(dof, nodes(i)))// &
-                            ' in direction '//as_text(dof)//' in this step; the later value '// &
-                            as_text(value)//' is used')
+                            'has the displacement '//as_text(table%value(dofs(d), nodes(i)))// &
+                            ' in direction '//as_text(dofs(d))//' in this step; the later '// &
+                            'value '//as_text(value)//' is used')
           return
         end do
       end do
     end associate
   end subroutine warn_of_second_value
 
-  !> Range of degrees of freedom; empty after a fault.
-  subroutine read_dofs(this, line, faults, first, last)
+  !> The degrees of freedom of a line; none after a fault.
+  subroutine read_dofs(this, line, faults, dofs)
     type(card), intent(in) :: this
     integer, intent(in) :: line
     type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: first, last
-    integer :: i, highest
-    first = 1
-    last = 0
+    integer, allocatable, intent(out) :: dofs(:)
+    integer :: i, highest, last
+    allocate (dofs(0))
     if (this%num_fields(line) > 4) then
       call this%fault_at(faults, line, 5, 'too many fields', 'node, first dof, last dof, value')
     end if
     if (.not. this%is_integer_at(line, 2)) then
-      call read_support_name(this, line, faults, first, last)
+      call read_support_name(this, line, faults, dofs)
       return
     end if
     highest = 3
@@ -164,38 +169,40 @@ contains
                          'a degree of freedom, 1 to 3 (solids have no rotations)')
       return
     end do
-    first = this%integer_at(line, 2)
-    last = first
+    last = this%integer_at(line, 2)
     if (.not. this%is_empty_at(line, 3)) last = this%integer_at(line, 3)
-    if (last < first) then
+    if (last < this%integer_at(line, 2)) then
       call this%fault_at(faults, line, 3, 'the last dof is below the first', &
                          'the smaller one first, as in 1, 3 for all three directions')
     end if
     if (last > 3) call this%ignore(faults, 'dof 4 to 6 have no effect: solids have no rotations')
-    last = min(last, 3)
+    dofs = [(i, i=this%integer_at(line, 2), min(last, 3))]
   end subroutine read_dofs
 
-  subroutine read_support_name(this, line, faults, first, last)
+  !> The degrees of freedom of a support that has a name.
+  subroutine read_support_name(this, line, faults, dofs)
     type(card), intent(in) :: this
     integer, intent(in) :: line
     type(diagnostic_list), intent(inout) :: faults
-    integer, intent(inout) :: first, last
+    integer, allocatable, intent(inout) :: dofs(:)
     select case (this%word_at(line, 2))
     case ('ENCASTRE', 'PINNED')
-      first = 1
-      last = 3
+      dofs = [1, 2, 3]
     case ('XSYMM')
-      last = 1
+      dofs = [1]
     case ('YSYMM')
-      first = 2
-      last = 2
+      dofs = [2]
     case ('ZSYMM')
-      first = 3
-      last = 3
+      dofs = [3]
+    case ('XASYMM')
+      dofs = [2, 3]
+    case ('YASYMM')
+      dofs = [1, 3]
+    case ('ZASYMM')
+      dofs = [1, 2]
     case default
       call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
-                         'a degree of freedom, 1 to 3, or ENCASTRE, PINNED, XSYMM, '// &
-                         'YSYMM, ZSYMM', &
+                         'a degree of freedom, 1 to 3, or '//with_commas(support_names), &
                          nearest_choice(this%word_at(line, 2), support_names))
       return
     end select

@@ -30,7 +30,8 @@ contains
     spec%fewest_lines = 1
     allocate (spec%parameters, source=[ &
               field('TYPE', kind_choice, 'kind of the values', is_required=.true., &
-                    choices='DISPLACEMENT | VELOCITY | TEMPERATURE')])
+                    choices='DISPLACEMENT | VELOCITY | TEMPERATURE', rules_lines=.true., &
+                    instead='for stresses, a first step *STATIC with the weight and the water')])
     allocate (spec%columns, source=[ &
               field('node', kind_reference, 'the nodes', &
                     is_required=.true.), &

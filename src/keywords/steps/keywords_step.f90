@@ -13,7 +13,7 @@ module keywords_step
   use moved_supports, only: close_accelerations
   use model_draft, only: draft
   use other_step_words, only: add_words_of_dynamic, add_words_of_static, add_words_of_step, &
-                              check_application, check_step_amplitude
+                              check_application, check_step_amplitude, has_faulty_procedure
   use step_plan, only: step_procedure
   use write_text, only: as_text
   implicit none
@@ -92,7 +92,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (model%now%procedure%name == '') then
+    if (model%now%procedure%name == '' .and. .not. has_faulty_procedure(model)) then
       call this%fault(faults, 'the step has no procedure', list_procedures()//' in the step')
     end if
     call check_base_motion(model, faults)
@@ -161,7 +161,7 @@ contains
               field('STABILIZE', kind_text, 'refused', may_be_bare=.true.)])
     allocate (spec%columns, source=[ &
               field('first increment', kind_real, 'size of the first increment', 's', &
-                    'the duration'), &
+                    'the duration, at most the largest'), &
               field('duration', kind_real, 'duration of the step', 's', '1'), &
               field('smallest', kind_real, 'smallest increment', 's', &
                     '1e-5 of the duration, at most 1e-3 of the first increment'), &
@@ -188,6 +188,9 @@ contains
     model%now%duration = 1.0_rk
     if (is_given(this, 2)) model%now%duration = this%real_at(1, 2)
     model%now%first_increment = model%now%duration
+    if (is_given(this, 4)) then
+      model%now%first_increment = min(model%now%duration, this%real_at(1, 4))
+    end if
     if (is_given(this, 1)) model%now%first_increment = this%real_at(1, 1)
     model%now%largest_increment = model%now%duration
     call read_limits(this, model, faults)

@@ -17,6 +17,7 @@ module summary_json
   use json_writer, only: json_text, lower
   use error_json, only: put_estimates, put_increments
   use machine_json, only: put_machine
+  use model_json, only: put_instances, put_model
   use joint_json, only: put_joints, put_interfaces, put_extremes
   use damage_json, only: put_damage
   use umat_json, only: put_umat
@@ -55,7 +56,7 @@ contains
     call json%put_text(model%deck_file, 'file')
     call json%put_text(summary%deck_digest, 'sha256')
     call json%close_object()
-    call put_model(json, model, summary)
+    call put_model(json, model, summary%num_unknowns)
     call put_instances(json, model)
     call put_effects(json, model)
     call put_interfaces(json, model)
@@ -105,39 +106,6 @@ contains
     call json%close_array()
     call json%close_object()
   end subroutine put_program
-
-  !> Counts.
-  subroutine put_model(json, model, summary)
-    type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: model
-    type(run_summary), intent(in) :: summary
-    call json%open_object('model')
-    call json%put_integer(model%mesh%num_nodes, 'nodes')
-    call json%put_integer(model%mesh%num_elements, 'elements')
-    call json%put_integer(summary%num_unknowns, 'unknowns')
-    call json%put_integer(size(model%joints), 'joints')
-    call json%put_integer(size(model%materials), 'materials')
-    call json%close_object()
-  end subroutine put_model
-
-  !> The instances of parts, with what is added to the numbers of their nodes and elements.
-  subroutine put_instances(json, model)
-    type(json_text), intent(inout) :: json
-    type(problem), intent(in) :: model
-    integer :: i
-    if (.not. allocated(model%instances)) return
-    if (size(model%instances) == 0) return
-    call json%open_array('instances')
-    do i = 1, size(model%instances)
-      call json%open_object()
-      call json%put_text(model%instances(i)%name, 'name')
-      call json%put_text(model%instances(i)%part, 'part')
-      call json%put_integer(model%instances(i)%nodes_added, 'nodes_added')
-      call json%put_integer(model%instances(i)%elements_added, 'elements_added')
-      call json%close_object()
-    end do
-    call json%close_array()
-  end subroutine put_instances
 
   !> The guests of the model: loads, joints, springs, ties, inelastic materials, damping.
   subroutine put_effects(json, model)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from .deck_cards import Card, Deck, fields_of, number_of, plain_name, quoted
@@ -98,8 +98,8 @@ def list_card(keyword: str, name: str, numbers: list[int]) -> Card:
     return Card(keyword, {keyword: quoted(name)}, [", ".join(map(str, row)) for row in rows])
 
 
-SUPPORTS = {"ENCASTRE": (1, 3), "PINNED": (1, 3), "XSYMM": (1, 1), "YSYMM": (2, 2),
-            "ZSYMM": (3, 3)}  # fmt: skip
+SUPPORTS = {"ENCASTRE": (1, 2, 3), "PINNED": (1, 2, 3), "XSYMM": (1,), "YSYMM": (2,),
+            "ZSYMM": (3,), "XASYMM": (2, 3), "YASYMM": (1, 3), "ZASYMM": (1, 2)}  # fmt: skip
 
 
 def back_of_slice(deck: Deck, sets: MeshSets) -> set[int]:
@@ -130,8 +130,8 @@ def held_nodes(deck: Deck, sets: MeshSets, dof: int) -> set[int]:
     return found
 
 
-def support_of(line: str) -> tuple[str, range, float]:
+def support_of(line: str) -> tuple[str, Sequence[int], float]:
     """Node or set, directions and value of a line of *BOUNDARY."""
     label, first, last, value = (plain_name(item) for item in [*fields_of(line), "", ""][:4])
-    low, high = SUPPORTS.get(first) or (int(first), int(last or first))
-    return label, range(low, high + 1), number_of(value) if value else 0.0
+    directions = SUPPORTS.get(first) or range(int(first), int(last or first) + 1)
+    return label, directions, number_of(value) if value else 0.0

@@ -23,6 +23,8 @@ program test_nearest_words
   call check_text(log, nearest_word('', known), '', 'nothing')
   call check_text(log, nearest_choice('westergard', 'NONE | WESTERGAARD'), 'WESTERGAARD', 'choices')
   call check_text(log, nearest_choice('YESS', 'YES|NO'), 'YES', 'choices without blanks')
+  call check_text(log, nearest_choice('ON', 'YES | NO'), '', 'two letters of another meaning')
+  call check_text(log, nearest_word('J2', ['J1', 'K3']), 'J1', 'names of two letters')
   call check_text(log, nearest_choice('MAYBE', 'YES | NO'), '', 'far from every choice')
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
