@@ -278,6 +278,7 @@ contains
     integer, intent(in) :: keyword_of_card(:)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(diagnostic_list) :: dropped
     integer :: pass, i
     do pass = pass_nodes, pass_rest
       if (pass == pass_nodes) call make_room_for_nodes(model, count_lines(pass))
@@ -286,7 +287,7 @@ contains
         if (keyword_of_card(i) == 0) cycle
         if (list%entries(keyword_of_card(i))%pass /= pass) cycle
         model%current = i
-        call handle_card(list, keyword_of_card(i), model, faults)
+        call handle_card(list, keyword_of_card(i), model, faults, dropped)
       end do
       if (pass == pass_elements) call open_tables(model)
     end do
@@ -307,12 +308,12 @@ contains
   end subroutine handle_cards
 
   !> A faulty card is handled too, so that its definition exists; its further faults are dropped.
-  subroutine handle_card(list, number, model, faults)
+  subroutine handle_card(list, number, model, faults, dropped)
     type(keyword_list), intent(in) :: list
     integer, intent(in) :: number !< of the keyword
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(diagnostic_list) :: dropped
+    type(diagnostic_list), intent(inout) :: dropped !< further faults of faulty cards
     call check_card(model%cards(model%current), list%specs(number), faults, model%is_right)
     if (model%is_right) then
       call list%entries(number)%handle(model%cards(model%current), model, faults)

@@ -61,6 +61,7 @@ set(sources
   loads/keywords_base_motion.f90
   loads/keywords_loads.f90
   loads/keywords_reservoir.f90
+  loads/load_cards.f90
   loads/uplift_edges.f90
   magnitudes/check_magnitudes.f90
   magnitudes/check_motions.f90

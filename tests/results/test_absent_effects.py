@@ -8,18 +8,13 @@ must differ by less: they ask whether there is anything to do, and return.
 from __future__ import annotations
 
 import json
-import os
-import re
-import shutil
-import subprocess
 from collections import Counter
 from pathlib import Path
 
 import pytest
-from harness import ROOT
 from tied_blocks import Blocks, node_set
+from valgrind import NEEDS_VALGRIND, SOURCES, instructions, module_of, watch
 
-SOURCES = {path.stem: path.parent.relative_to(ROOT / "src") for path in ROOT.glob("src/**/*.f90")}
 # Rooms of effects that are not in the scene: one elastic block under its weight, in motion
 ABSENT_ROOMS = (
     "joints/law", "joints/points", "joints/compliance", "joints/iteration", "interfaces/couplings",
@@ -35,11 +30,7 @@ ABSENT_MODULES = (
 )  # fmt: skip
 # Modules of these rooms that solve the equations of every model
 PRESENT = ("equilibrium", "equilibrium_linear", "equilibrium_catalogue")
-NEEDS = "valgrind is not installed"
-pytestmark = [
-    pytest.mark.skipif(shutil.which("valgrind") is None, reason=NEEDS),
-    pytest.mark.timeout(600),
-]
+pytestmark = NEEDS_VALGRIND
 
 
 def scene(n: int) -> str:
@@ -55,35 +46,12 @@ def scene(n: int) -> str:
 
 
 def watched(program: Path, folder: Path, tool: str, n: int) -> Path:
-    """The file that a tool of valgrind leaves of a run; the program starts itself once more."""
+    """The file that a tool of valgrind leaves of a run."""
     folder = folder / f"{tool}_{n}"
     folder.mkdir()
     (folder / "job.inp").write_text(scene(n))
-    out = f"--{tool}-out-file={folder}/out.%p"
-    command = ["valgrind", "-q", f"--tool={tool}", "--trace-children=yes", out, str(program)]
-    # valgrind does not know the instructions of the newest kernels
-    env = {**os.environ, "OPENBLAS_CORETYPE": "HASWELL"}
-    subprocess.run(
-        [*command, "-q", "-j", "1", "-o", str(folder), str(folder / "job.inp")],
-        env=env, check=True, timeout=300,
-    )  # fmt: skip
-    return max(folder.glob("out.*"), key=lambda path: path.stat().st_size)
-
-
-def module_of(symbol: str) -> str:
-    """The module of a procedure of the program; '' of others."""
-    found = re.search(r"__(?:\w+\.)?(\w+?)_MOD_", symbol)
-    return found[1] if found and found[1] in SOURCES else ""
-
-
-def instructions(path: Path) -> Counter:
-    """Instructions by module, without those of the procedures that they call."""
-    command = ["callgrind_annotate", "--threshold=100", str(path)]
-    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    total: Counter = Counter()
-    for number, symbol in re.findall(r"^\s*([\d,]+) \([^)]*\)\s+(\S+)", text, re.M):
-        total[module_of(symbol)] += int(number.replace(",", ""))
-    return total
+    run = ["-q", "-j", "1", "-o", str(folder), str(folder / "job.inp")]
+    return watch(program, folder, tool, run)
 
 
 def allocated_bytes(path: Path) -> Counter:

@@ -2,10 +2,10 @@
 !>
 !> One list collects all faults while the deck is read; diagnostic_text makes messages of them.
 module diagnostics
-  use fault_kinds, only: kind_list
+  use fault_kinds, only: kind_list, shows_reference
   implicit none
   private
-  public :: place, diagnostic, diagnostic_list
+  public :: place, diagnostic, diagnostic_list, is_shown
   public :: severity_error, severity_warning, severity_ignored
 
   integer, parameter :: severity_error = 1 !< the deck is wrong
@@ -122,6 +122,15 @@ contains
     end associate
     call self%kinds%note_line(new%kind, new%spot%line)
   end subroutine keep_error
+
+  !> Whether the next error of a missing thing is shown: the search for a name of similar spelling
+  !> takes time where there are many names.
+  pure logical function is_shown(faults, problem)
+    type(diagnostic_list), intent(in) :: faults
+    character(*), intent(in) :: problem !< 'there is no ..'
+    is_shown = faults%num_kept < most_kept
+    if (is_shown) is_shown = shows_reference(faults%kinds, problem)
+  end function is_shown
 
   !> Whether the deck cannot be run.
   pure logical function has_errors(self)

@@ -9,7 +9,7 @@ module fault_kinds
   use message_catalogue, only: label_of_fault
   implicit none
   private
-  public :: fault_kind, kind_list
+  public :: fault_kind, kind_list, shows_reference
 
   !> Errors of one kind.
   type :: fault_kind
@@ -71,6 +71,20 @@ contains
       if (kind%file /= file) kind%file = ''
     end associate
   end subroutine count_fault
+
+  !> Whether one more error of a missing thing is shown beside those of its kind.
+  pure logical function shows_reference(kinds, problem)
+    type(kind_list), intent(in) :: kinds
+    character(*), intent(in) :: problem !< 'there is no ..'
+    character(:), allocatable :: name
+    integer :: i
+    name = text_of_kind(problem, .true.)
+    shows_reference = .true.
+    do i = 1, kinds%num_kinds
+      if (kinds%kinds(i)%name /= name) cycle
+      shows_reference = kinds%kinds(i)%num < kinds%kinds(i)%most_shown
+    end do
+  end function shows_reference
 
   !> Notes the line of an error that is not shown.
   subroutine note_line(self, number, line)

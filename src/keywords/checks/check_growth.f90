@@ -18,37 +18,33 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(text_numbers) :: names !< of sets, with their kinds
-    integer :: last(size(model%cards)) !< (names) card that has added to the set
+    integer :: user(size(model%cards)) !< (names) first card that takes the set as it is, or 0
     character(:), allocatable :: kind
     integer :: i, n
     do i = 1, size(model%cards)
       if (is_keyword(model%cards(i), 'INSTANCE')) return
     end do
-    last = 0
+    user = 0
     do i = 1, size(model%cards)
       kind = kind_of_set(model%cards(i))
-      if (kind == '') cycle
-      call names%find_or_add(kind//' '//model%cards(i)%word(kind), n)
-      if (last(n) > 0) call warn_of_use(model%cards(last(n):i), kind, faults)
-      last(n) = i
+      n = 0
+      if (kind /= '') then
+        call names%find_or_add(kind//' '//model%cards(i)%word(kind), n)
+        if (user(n) > 0) call warn_of_use(model%cards(i), kind, model%cards(user(n)), faults)
+      end if
+      call note_sets(model%cards(i), i, 'NSET', names, user)
+      call note_sets(model%cards(i), i, 'ELSET', names, user)
+      if (n > 0) user(n) = 0
     end do
   end subroutine warn_of_growth
 
-  !> Warns where a card between the first and the last has taken the set that both add to.
-  subroutine warn_of_use(cards, kind, faults)
-    type(card), intent(in) :: cards(:)
+  !> Warns of a card that adds to a set which a card above has taken.
+  subroutine warn_of_use(this, kind, user, faults)
+    type(card), intent(in) :: this, user
     character(*), intent(in) :: kind !< 'NSET' or 'ELSET'
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i
-    associate (this => cards(size(cards)))
-      do i = 2, size(cards) - 1
-        if (.not. takes(cards(i), kind, this%word(kind))) cycle
-        call this%warn(faults, "the set '"//this%text(kind)//"' gets members here that *"// &
-                       cards(i)%spec%name//' above has not taken: complete a set before its '// &
-                       'first use')
-        return
-      end do
-    end associate
+    call this%warn(faults, "the set '"//this%text(kind)//"' gets members here that *"// &
+                   user%spec%name//' above has not taken: complete a set before its first use')
   end subroutine warn_of_use
 
   !> The parameter by which a card adds to a set: 'NSET', 'ELSET' or ''.
@@ -62,36 +58,53 @@ contains
     if (.not. this%has(kind)) kind = ''
   end function kind_of_set
 
-  !> Whether a card has taken the members of a set as they were. Sections take them at the end of
-  !> the deck.
-  pure logical function takes(this, kind, name)
+  !> Notes a card as the user of the sets that it takes as they are. Sections take sets at the end
+  !> of the deck.
+  subroutine note_sets(this, number, kind, names, user)
     type(card), intent(in) :: this
+    integer, intent(in) :: number !< of the card
     character(*), intent(in) :: kind !< 'NSET' or 'ELSET'
-    character(*), intent(in) :: name !< upper case
-    integer :: field, last, line
-    takes = .false.
+    type(text_numbers), intent(in) :: names !< of sets, with their kinds
+    integer, intent(inout) :: user(:) !< (names) 0 for none
+    integer :: field, line
     if (.not. allocated(this%spec%name)) return
-    last = 0
-    select case (this%spec%name)
-    case ('BOUNDARY', 'CLOAD', 'INITIAL CONDITIONS', 'TEMPERATURE')
-      if (kind == 'NSET') last = 1
-    case ('DLOAD', 'SURFACE')
-      if (kind == 'ELSET' .or. this%word('TYPE') == 'NODE') last = 1
-    case ('MODEL CHANGE')
-      if (kind == 'ELSET') last = huge(1)
-    case ('NSET', 'ELSET')
-      if (kind == this%spec%name .and. .not. this%has('GENERATE')) last = huge(1)
-    case ('NODE PRINT', 'EL PRINT')
-      takes = this%word(kind) == name
+    if (this%spec%name == 'NODE PRINT' .or. this%spec%name == 'EL PRINT') then
+      if (this%has(kind)) call note(this%word(kind))
       return
-    case default
-      return
-    end select
-    do line = 1, this%num_lines
-      do field = 1, min(last, this%num_fields(line))
-        takes = this%word_at(line, field) == name
-        if (takes) return
+    end if
+    do line = 1, merge(this%num_lines, 0, most_fields(this, kind) > 0)
+      do field = 1, min(most_fields(this, kind), this%num_fields(line))
+        if (.not. this%is_integer_at(line, field)) call note(this%word_at(line, field))
       end do
     end do
-  end function takes
+
+  contains
+
+    subroutine note(name)
+      character(*), intent(in) :: name !< upper case
+      integer :: n
+      n = names%find(kind//' '//name)
+      if (n == 0) return
+      if (user(n) == 0) user(n) = number
+    end subroutine note
+  end subroutine note_sets
+
+  !> Fields of each line of a card that may name sets of a kind; an integer is a node or an element.
+  pure integer function most_fields(this, kind)
+    type(card), intent(in) :: this !< of a known keyword
+    character(*), intent(in) :: kind !< 'NSET' or 'ELSET'
+    most_fields = 0
+    select case (this%spec%name)
+    case ('BOUNDARY', 'CLOAD', 'INITIAL CONDITIONS', 'TEMPERATURE')
+      if (kind == 'NSET') most_fields = 1
+    case ('DLOAD', 'SURFACE')
+      if (kind == 'ELSET' .or. this%word('TYPE') == 'NODE') most_fields = 1
+    case ('MODEL CHANGE')
+      if (kind == 'ELSET') most_fields = huge(1)
+    case ('NSET', 'ELSET')
+      if (kind == this%spec%name .and. .not. this%has('GENERATE')) most_fields = huge(1)
+    case default
+      continue ! the keyword takes no set
+    end select
+  end function most_fields
 end module check_growth

@@ -23,6 +23,10 @@ module check_histories
 
   !> What the increments of a step see of a history.
   type :: view_of_history
+    integer :: amplitude = 0, step = 0
+    logical :: is_seen = .false. !< the increments are not too many to look at
+    real(rk) :: peak = 0.0_rk !< the largest value of the history in the step
+    logical :: is_finest = .false. !< *CONTROLS, ACCURACY chooses the increments
     real(rk) :: smallest = 0.0_rk, largest = 0.0_rk !< increment [s]
     real(rk) :: seen = 0.0_rk !< the largest value at their ends
     !> The largest increment that has grown beyond the time between the values within it, 0 for
@@ -37,6 +41,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer :: step(size(model%cards))
+    type(view_of_history) :: view
     integer :: i, a, coarse
     step = steps_of_cards(model%cards)
     coarse = 0
@@ -54,8 +59,8 @@ contains
       call find_amplitude(model%cards(i), model, faults, a)
       if (a == 0) cycle
       call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
-      call warn_of_increments(model%cards(i), model, step(i), model%problem%amplitudes(a), coarse, &
-                              faults)
+      if (view%amplitude /= a .or. view%step /= step(i)) call look_at(model, step(i), a, view)
+      if (view%is_seen) call warn_of_increments(model%cards(i), model, view, coarse, faults)
       if (.not. is_keyword(model%cards(i), 'BASE MOTION')) then
         call warn_of_unit(model%cards(i), model, a, faults)
       end if
@@ -92,32 +97,43 @@ contains
     end associate
   end subroutine warn_of_span
 
-  !> A peak between the increments does not act. Increments are taken to grow as they do where each
-  !> converges quickly. One warning in a step says that they grow beyond the spacing of a motion.
-  subroutine warn_of_increments(this, model, s, record, coarse, faults)
+  !> What a step sees of a history. Increments are taken to grow as they do where each converges
+  !> quickly.
+  subroutine look_at(model, s, a, view)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: s, a !< step and amplitude
+    type(view_of_history), intent(out) :: view
+    type(increment_control) :: control
+    real(rk) :: span(2)
+    view%amplitude = a
+    view%step = s
+    associate (plan => model%problem%steps(s), record => model%problem%amplitudes(a))
+      view%is_seen = plan%duration/plan%first_increment <= real(most_samples, rk)
+      if (.not. view%is_seen) return
+      span = span_of_step(model%problem%steps, s, record%uses_total_time)
+      view%peak = maxval(abs(record%value), &
+                         mask=record%time >= span(1) .and. record%time <= span(2))
+      call start_control(plan, plan%procedure%has_inertia, control)
+      view%is_finest = control%finest > 0.0_rk
+      if (view%is_finest) control%size = control%finest
+      call walk_increments(record, span(1), control, view)
+    end associate
+  end subroutine look_at
+
+  !> A peak between the increments does not act. One warning in a step says that the increments grow
+  !> beyond the spacing of a motion.
+  subroutine warn_of_increments(this, model, view, coarse, faults)
     type(card), intent(in) :: this
     type(draft), intent(in) :: model
-    integer, intent(in) :: s !< step
-    type(amplitude), intent(in) :: record
+    type(view_of_history), intent(in) :: view
     integer, intent(inout) :: coarse !< the last step that was warned of, 0 for none
     type(diagnostic_list), intent(inout) :: faults
-    type(increment_control) :: control
-    type(view_of_history) :: view
     character(:), allocatable :: sizes
-    real(rk) :: span(2), peak
-    span = span_of_step(model%problem%steps, s, record%uses_total_time)
-    peak = maxval(abs(record%value), mask=record%time >= span(1) .and. record%time <= span(2))
-    associate (plan => model%problem%steps(s))
-      if (plan%duration/plan%first_increment > real(most_samples, rk)) return
-      call start_control(plan, plan%procedure%has_inertia, control)
-    end associate
-    if (control%finest > 0.0_rk) control%size = control%finest ! with *CONTROLS, ACCURACY
-    call walk_increments(record, span(1), control, view)
-    if (view%seen >= seen_share*peak) then
-      if (coarse == s .or. control%finest > 0.0_rk .or. view%coarse <= 0.0_rk) return
-      if (.not. model%problem%steps(s)%procedure%has_inertia) return
+    if (view%seen >= seen_share*view%peak) then
+      if (coarse == view%step .or. view%is_finest .or. view%coarse <= 0.0_rk) return
+      if (.not. model%problem%steps(view%step)%procedure%has_inertia) return
       if (.not. (is_keyword(this, 'BASE MOTION') .or. is_keyword(this, 'BOUNDARY'))) return
-      coarse = s
+      coarse = view%step
       call warn_of_growth(this, view%coarse, view%spacing, faults)
       return
     end if
@@ -127,7 +143,7 @@ contains
     end if
     call this%warn(faults, 'increments of '//sizes//" s miss the peak of the history '"// &
                    this%text('AMPLITUDE')//"': "//as_text(view%seen)//' at their ends, '// &
-                   as_text(peak)//' in the history', 'increments that end near the peak')
+                   as_text(view%peak)//' in the history', 'increments that end near the peak')
   end subroutine warn_of_increments
 
   !> Goes through the increments of a step.
@@ -135,7 +151,7 @@ contains
     type(amplitude), intent(in) :: record
     real(rk), intent(in) :: start !< of the step on the clock of the history [s]
     type(increment_control), intent(inout) :: control !< at the start of the step
-    type(view_of_history), intent(out) :: view
+    type(view_of_history), intent(inout) :: view !< of the step, so far empty
     real(rk) :: t, size, spacing
     integer :: first
     view%smallest = control%size
@@ -197,13 +213,7 @@ contains
     integer, intent(in) :: a !< amplitude
     type(diagnostic_list), intent(inout) :: faults
     logical :: has_unit
-    integer :: i
-    has_unit = abs(model%record_factor(a) - 1.0_rk) > 0.0_rk
-    do i = 1, size(model%cards)
-      if (.not. is_keyword(model%cards(i), 'AMPLITUDE')) cycle
-      if (model%cards(i)%word('NAME') /= this%word('AMPLITUDE')) cycle
-      has_unit = has_unit .or. model%cards(i)%has('UNIT')
-    end do
+    has_unit = abs(model%record_factor(a) - 1.0_rk) > 0.0_rk .or. model%record_unit(a) /= ''
     if (has_unit) call this%warn(faults, "amplitude '"//this%text('AMPLITUDE')//"' is a record "// &
                                  'of acceleration: its values in m/s2 scale the load')
   end subroutine warn_of_unit

@@ -7,7 +7,6 @@ module check_idle_steps
   use keyword_spec, only: without_effect
   use kinds, only: rk
   use model_draft, only: draft
-  use step_plan, only: step_procedure
   implicit none
   private
   public :: warn_of_idle_steps, has_inelastic_law, first_displacement
@@ -47,18 +46,18 @@ contains
   subroutine warn_of_idle_steps(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    type(later_steps) :: now
+    type(later_steps) :: later(size(model%problem%steps))
     integer :: step(size(model%cards))
     integer :: i
     call warn_of_idle_run(model, faults)
     step = steps_of_cards(model%cards)
+    later = steps_from_each(model)
     do i = 1, size(step)
-      associate (this => model%cards(i))
-        if (is_keyword(this, 'DAMPING') .and. step(i) == 0) then
-          call warn_of_material_damping(this, model, faults)
-        end if
-        if (step(i) == 0 .or. .not. allocated(this%spec%name)) cycle
-        now = steps_from(model, step(i))
+      if (is_keyword(model%cards(i), 'DAMPING') .and. step(i) == 0) then
+        call warn_of_material_damping(model%cards(i), model, faults)
+      end if
+      if (step(i) == 0 .or. .not. allocated(model%cards(i)%spec%name)) cycle
+      associate (this => model%cards(i), now => later(step(i)))
         select case (this%spec%name)
         case ('DAMPING')
           call warn_of_damping(this, now, faults)
@@ -106,17 +105,23 @@ contains
       'motion of the base: nothing acts, and all results are zero')
   end subroutine warn_of_idle_run
 
-  pure type(later_steps) function steps_from(model, number) result(now)
+  !> What is known from each step on.
+  pure function steps_from_each(model) result(later)
     type(draft), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    type(step_procedure) :: procedures(number:size(model%problem%steps))
-    procedures = model%problem%steps(number:)%procedure
-    now%any_moves = any(.not. procedures%finds_modes)
-    now%any_inertia = any(procedures%has_inertia)
-    now%are_modes = procedures(number)%finds_modes
-    now%is_inelastic = has_inelastic_law(model)
-    now%has_joints = size(model%joints) > 0
-  end function steps_from
+    type(later_steps) :: later(size(model%problem%steps))
+    type(later_steps) :: now
+    integer :: s
+    now = later_steps(any_moves=.false., any_inertia=.false., are_modes=.false., &
+                      is_inelastic=has_inelastic_law(model), has_joints=size(model%joints) > 0)
+    do s = size(later), 1, -1
+      associate (procedure => model%problem%steps(s)%procedure)
+        now%any_moves = now%any_moves .or. .not. procedure%finds_modes
+        now%any_inertia = now%any_inertia .or. procedure%has_inertia
+        now%are_modes = procedure%finds_modes
+      end associate
+      later(s) = now
+    end do
+  end function steps_from_each
 
   !> Whether a material cracks or yields. An unused material may have no law.
   pure logical function has_inelastic_law(model) result(is_inelastic)

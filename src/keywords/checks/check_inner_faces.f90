@@ -1,11 +1,12 @@
 !> Warns of pressure and water on a face between two solids: the load pushes them apart, and its
 !> resultant has the sign opposite to that on the outer face of the same elements.
 module check_inner_faces
-  use check_pressures, only: card_of_faces, find_faces
+  use check_pressures, only: card_of_load, find_faces
   use dam_mesh, only: surface
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use kinds, only: rk
+  use load_cards, only: list_load_cards, load_card_list
   use mesh_faces, only: count_corners, face_nodes, face_table, find_face, insert_face, open_table
   use model_draft, only: draft
   use write_text, only: as_text
@@ -20,6 +21,12 @@ module check_inner_faces
     integer, allocatable :: behind(:) !< element that has the same face, 0 for none
   end type loaded_faces
 
+  !> The steps in which each load acts.
+  type :: acting_steps
+    integer, allocatable :: first(:) !< (loads) its first entry, 0 for none
+    integer, allocatable :: step(:), next(:) !< (entries) step, and entry of the next step or 0
+  end type acting_steps
+
 contains
 
   !> One warning for each load. The deck must have no errors.
@@ -27,22 +34,27 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(loaded_faces) :: list
+    type(acting_steps) :: steps
+    type(load_card_list) :: cards
     integer, allocatable :: first(:), num(:) !< (loads) first such face, and how many there are
     integer :: i, s
     call list_faces(model, list)
     if (list%table%num_faces == 0) return
     call find_solids_behind(model, list)
+    if (all(list%behind == 0)) return
+    call list_steps(model, steps)
+    call list_load_cards(model%cards, cards)
     allocate (first(size(model%problem%loads)), num(size(model%problem%loads)), source=0)
     do i = list%table%num_faces, 1, -1
       if (list%behind(i) == 0) cycle
-      if (.not. is_inside(model, list, i)) cycle
+      if (.not. is_inside(model, list, steps, i)) cycle
       first(list%load(i)) = i
       num(list%load(i)) = num(list%load(i)) + 1
     end do
     do i = 1, size(num)
       if (num(i) == 0) cycle
-      s = first_step(model, i, list%element(first(i)))
-      call warn(model, list, first(i), num(i), s, faults)
+      s = first_step(model, steps, i, list%element(first(i)))
+      call warn(model, cards, list, first(i), num(i), s, faults)
     end do
   end subroutine warn_of_inner_faces
 
@@ -97,27 +109,54 @@ contains
 
   !> Whether the element behind a face is there as soon as the load acts. A later stage may put an
   !> element on a face that a load of an earlier step pushes.
-  pure logical function is_inside(model, list, i)
+  pure logical function is_inside(model, list, steps, i)
     type(draft), intent(in) :: model
     type(loaded_faces), intent(in) :: list
+    type(acting_steps), intent(in) :: steps
     integer, intent(in) :: i !< number of the face
     integer :: s
-    s = first_step(model, list%load(i), list%element(i))
+    s = first_step(model, steps, list%load(i), list%element(i))
     is_inside = s > 0
     if (is_inside) is_inside = is_there(model, list%behind(i), s)
   end function is_inside
 
-  !> The first step in which a load acts on an element that is there; 0 for none.
-  pure integer function first_step(model, load, element) result(s)
+  !> Lists the steps of each load whose factor is not zero.
+  pure subroutine list_steps(model, list)
     type(draft), intent(in) :: model
+    type(acting_steps), intent(out) :: list
+    integer :: s, i, num
+    num = 0
+    do s = 1, size(model%problem%steps)
+      num = num + size(model%problem%steps(s)%loads)
+    end do
+    allocate (list%first(size(model%problem%loads)), source=0)
+    allocate (list%step(num), list%next(num))
+    num = 0
+    do s = size(model%problem%steps), 1, -1
+      do i = 1, size(model%problem%steps(s)%loads)
+        associate (work => model%problem%steps(s)%loads(i))
+          if (work%amplitude == 0 .and. abs(work%end_factor) <= 0.0_rk) cycle
+          num = num + 1
+          list%step(num) = s
+          list%next(num) = list%first(work%load)
+          list%first(work%load) = num
+        end associate
+      end do
+    end do
+  end subroutine list_steps
+
+  !> The first step in which a load acts on an element that is there; 0 for none.
+  pure integer function first_step(model, steps, load, element) result(s)
+    type(draft), intent(in) :: model
+    type(acting_steps), intent(in) :: steps
     integer, intent(in) :: load
     integer, intent(in) :: element !< position
-    do s = 1, size(model%problem%steps)
-      if (.not. is_there(model, element, s)) cycle
-      associate (works => model%problem%steps(s)%loads)
-        if (any(works%load == load .and. (works%amplitude > 0 .or. &
-                                          abs(works%end_factor) > 0.0_rk))) return
-      end associate
+    integer :: i
+    i = steps%first(load)
+    do while (i > 0)
+      s = steps%step(i)
+      if (is_there(model, element, s)) return
+      i = steps%next(i)
     end do
     s = 0
   end function first_step
@@ -132,8 +171,9 @@ contains
     end if
   end function is_there
 
-  subroutine warn(model, list, i, num, s, faults)
+  subroutine warn(model, cards, list, i, num, s, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
     type(loaded_faces), intent(in) :: list
     integer, intent(in) :: i !< number of the first face
     integer, intent(in) :: num !< such faces of its load
@@ -146,8 +186,8 @@ contains
              as_text(mesh%element_id(list%behind(i)))//" is behind it, and '"//item%target// &
              "' pushes both elements apart"
       if (num > 1) text = text//'; '//as_text(num)//' such faces'
-      call model%cards(card_of_faces(model, s, item))%warn(faults, text, &
-                                                           'outer faces of the solid')
+      call model%cards(card_of_load(model, cards, s, item))%warn(faults, text, &
+                                                                 'outer faces of the solid')
     end associate
   end subroutine warn
 end module check_inner_faces

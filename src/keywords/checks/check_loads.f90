@@ -2,20 +2,22 @@
 !> level above the crest.
 module check_loads
   use amplitudes, only: amplitude
-  use deck_scan, only: is_keyword, steps_of_cards
-  use dload_labels, only: elements_in_words
+  use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
+  use growing_lists, only: append, make_room
   use kinds, only: rk
   use load_base_motion, only: base_motion
+  use load_cards, only: list_load_cards, load_card_list, target_of_motion
   use load_gravity, only: gravity_load
   use mesh_faces, only: face_nodes
   use model_draft, only: draft
   use named_things, only: find_surface_name
   use step_plan, only: step_load
+  use text_table, only: text_numbers
   use write_text, only: as_text
   implicit none
   private
-  public :: card_of_dload, card_of_motion, warn_of_loads
+  public :: warn_of_loads
 
   real(rk), parameter :: small_share = 0.01_rk !< of the peak: the end of a record counts as zero
   real(rk), parameter :: round_off = 1.0e-9_rk
@@ -23,31 +25,53 @@ module check_loads
   !> coordinates in mm is a thousandth of what was meant.
   real(rk), parameter :: least_wet = 2.0e-3_rk
 
+  !> The weights that act at the end of a step, by their names.
+  type :: weights_by_name
+    type(text_numbers) :: names
+    integer, allocatable :: first(:) !< (names) entry, 0 for none
+    integer, allocatable :: load(:), next(:) !< (entries) load, and entry of the same name or 0
+  end type weights_by_name
+
+  !> The weights of a step by their elements.
+  type :: weights_by_element
+    integer, allocatable :: newest(:) !< (elements) entry, 0 for none
+    integer :: num_entries = 0
+    integer, allocatable :: load(:), before(:) !< (entries) load, and entry of the element or 0
+  end type weights_by_element
+
 contains
 
   !> The deck must have no errors.
   subroutine warn_of_loads(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: step(size(model%cards))
-    step = steps_of_cards(model%cards)
-    call warn_of_weights(model, step, faults)
-    call warn_of_lost_weights(model, step, faults)
-    call warn_of_records(model, step, faults)
+    type(load_card_list) :: cards
+    call list_load_cards(model%cards, cards)
+    call warn_of_weights(model, cards, faults)
+    call warn_of_lost_weights(model, cards, faults)
+    call warn_of_records(model, cards, faults)
     call warn_of_levels(model, faults)
   end subroutine warn_of_loads
 
   !> Elements whose weight acts twice in one direction, in the first step that has any.
-  subroutine warn_of_weights(model, step, faults)
+  subroutine warn_of_weights(model, cards, faults)
     type(draft), intent(in) :: model
-    integer, intent(in) :: step(:) !< of each card
+    type(load_card_list), intent(in) :: cards
     type(diagnostic_list), intent(inout) :: faults
+    logical, dimension(size(model%problem%loads)) :: acts, acted !< in the step, in that before
     integer :: first, second, e, s
+    acted = .false.
     do s = 1, size(model%problem%steps)
+      acts = .false.
+      associate (now => model%problem%steps(s)%loads)
+        acts(now%load) = abs(now%end_factor) > 0.0_rk
+      end associate
+      if (all(acted .or. .not. acts)) cycle ! no load has come
+      acted = acts
       call find_second_weight(model, s, first, second, e)
       if (second == 0) cycle
       associate (loads => model%problem%loads)
-        call model%cards(card_of_dload(model, step, s, loads(second)%item%target))%warn( &
+        call model%cards(card_of_weight(model, cards, s, loads(second)%item%target))%warn( &
           faults, 'the weight of element '//as_text(model%problem%mesh%element_id(e))// &
           ' acts twice in step '//as_text(s)//": '"//loads(first)%item%target//"' and '"// &
           loads(second)%item%target//"' add up")
@@ -58,19 +82,22 @@ contains
 
   !> Weights that a line with another direction replaces, so that nothing acts along the old one:
   !> in CalculiX both act.
-  subroutine warn_of_lost_weights(model, step, faults)
+  subroutine warn_of_lost_weights(model, cards, faults)
     type(draft), intent(in) :: model
-    integer, intent(in) :: step(:) !< of each card
+    type(load_card_list), intent(in) :: cards
     type(diagnostic_list), intent(inout) :: faults
+    type(weights_by_name) :: new
     integer :: i, s
     do s = 2, size(model%problem%steps)
+      if (.not. any(abs(model%problem%steps(s)%loads%end_factor) <= 0.0_rk)) cycle
+      call list_weights(model, model%problem%steps(s)%loads, new)
       do i = 1, size(model%problem%steps(s)%loads)
         associate (work => model%problem%steps(s)%loads(i))
           if (abs(work%end_factor) > 0.0_rk) cycle
           select type (old => model%problem%loads(work%load)%item)
           type is (gravity_load)
-            if (.not. is_turned(model, s, old)) cycle
-            call model%cards(card_of_dload(model, step, s, old%target))%warn( &
+            if (.not. is_turned(model, new, old)) cycle
+            call model%cards(card_of_weight(model, cards, s, old%target))%warn( &
               faults, "'"//old%target//"' of an earlier step ends: this card replaces it by "// &
               'one of another direction; expected both directions in this step if both are meant')
           end select
@@ -79,24 +106,44 @@ contains
     end do
   end subroutine warn_of_lost_weights
 
-  !> Whether a step gives a weight of the same name, but none along the old direction.
-  pure logical function is_turned(model, s, old)
+  !> Lists the weights that a step does not end.
+  pure subroutine list_weights(model, loads, list)
     type(draft), intent(in) :: model
-    integer, intent(in) :: s !< step
+    type(step_load), intent(in) :: loads(:) !< of the step
+    type(weights_by_name), intent(out) :: list
+    integer :: i, name
+    allocate (list%first(size(loads)), source=0)
+    allocate (list%next(size(loads)), list%load(size(loads)))
+    do i = size(loads), 1, -1
+      if (abs(loads(i)%end_factor) <= 0.0_rk) cycle
+      select type (weight => model%problem%loads(loads(i)%load)%item)
+      type is (gravity_load)
+        call list%names%find_or_add(weight%target, name)
+        list%load(i) = loads(i)%load
+        list%next(i) = list%first(name)
+        list%first(name) = i
+      end select
+    end do
+  end subroutine list_weights
+
+  !> Whether a step gives a weight of the same name, but none along the old direction.
+  pure logical function is_turned(model, list, old)
+    type(draft), intent(in) :: model
+    type(weights_by_name), intent(in) :: list !< of the step
     type(gravity_load), intent(in) :: old
-    integer :: i
+    integer :: i, name
     is_turned = .false.
-    do i = 1, size(model%problem%steps(s)%loads)
-      associate (work => model%problem%steps(s)%loads(i))
-        if (abs(work%end_factor) <= 0.0_rk) cycle
-        select type (new => model%problem%loads(work%load)%item)
-        type is (gravity_load)
-          if (new%target /= old%target) cycle
-          is_turned = abs(dot_product(new%acceleration, old%acceleration)) &
-                      <= round_off*norm2(new%acceleration)*norm2(old%acceleration)
-          if (.not. is_turned) return
-        end select
-      end associate
+    name = list%names%find(old%target)
+    if (name == 0) return
+    i = list%first(name)
+    do while (i > 0)
+      select type (new => model%problem%loads(list%load(i))%item)
+      type is (gravity_load)
+        is_turned = abs(dot_product(new%acceleration, old%acceleration)) &
+                    <= round_off*norm2(new%acceleration)*norm2(old%acceleration)
+        if (.not. is_turned) return
+      end select
+      i = list%next(i)
     end do
   end function is_turned
 
@@ -107,76 +154,67 @@ contains
     integer, intent(in) :: s !< step
     integer, intent(out) :: first, second !< loads
     integer, intent(out) :: e !< position of the element
-    integer, allocatable :: owner(:, :) !< (elements, directions) load that gives the weight
-    real(rk), allocatable :: directions(:, :)
-    integer :: i, d
+    type(weights_by_element) :: list
+    integer :: i, k
+    first = 0
     second = 0
     e = 0
-    allocate (owner(model%problem%mesh%num_elements, 0), directions(3, 0))
     do i = 1, size(model%problem%steps(s)%loads)
       associate (work => model%problem%steps(s)%loads(i))
         if (abs(work%end_factor) <= 0.0_rk) cycle
         select type (weight => model%problem%loads(work%load)%item)
         type is (gravity_load)
-          call find_direction(weight%acceleration, directions, d)
-          if (d > size(owner, 2)) owner = reshape(owner, [size(owner, 1), d], pad=[0])
-          call own_elements(weight%elements, work%load, owner(:, d), first, e)
-          if (e > 0) second = work%load
+          if (.not. allocated(list%newest)) then
+            allocate (list%newest(model%problem%mesh%num_elements), source=0)
+          end if
+          do k = 1, size(weight%elements)
+            e = weight%elements(k)
+            first = owner_of(model, list, e, weight%acceleration)
+            if (first > 0) second = work%load
+            if (first > 0) return
+            call make_room(list%before, list%num_entries, 1)
+            list%before(list%num_entries + 1) = list%newest(e)
+            call append(list%load, list%num_entries, work%load)
+            list%newest(e) = list%num_entries
+          end do
         end select
       end associate
-      if (second > 0) return
     end do
   end subroutine find_second_weight
 
-  !> Enters a load as the owner of its elements, up to an element that has an owner.
-  pure subroutine own_elements(elements, load, owner, first, e)
-    integer, intent(in) :: elements(:), load
-    integer, intent(inout) :: owner(:) !< (elements) 0: none so far
-    integer, intent(out) :: first !< owner of the element `e`
-    integer, intent(inout) :: e !< element with two owners, unchanged without one
-    integer :: k
-    first = 0
-    do k = 1, size(elements)
-      first = owner(elements(k))
-      if (first > 0) e = elements(k)
-      if (first > 0) return
-      owner(elements(k)) = load
-    end do
-  end subroutine own_elements
-
-  !> The number of a direction in a list; a new direction is added.
-  pure subroutine find_direction(direction, list, number)
-    real(rk), intent(in) :: direction(3)
-    real(rk), allocatable, intent(inout) :: list(:, :) !< (3, directions)
-    integer, intent(out) :: number
-    do number = 1, size(list, 2)
-      if (norm2(list(:, number) - direction) <= round_off) return
-    end do
-    list = reshape([list, direction], [3, size(list, 2) + 1])
-    number = size(list, 2)
-  end subroutine find_direction
-
-  !> The last card that gives a load of *DLOAD, up to a step.
-  pure integer function card_of_dload(model, step, s, target) result(found)
+  !> The load that gives an element weight in a direction, 0 for none.
+  pure integer function owner_of(model, list, element, direction) result(owner)
     type(draft), intent(in) :: model
-    integer, intent(in) :: step(:) !< of each card
-    integer, intent(in) :: s !< step
-    character(*), intent(in) :: target !< of the load: 'DAM GRAV', 'DAM P3'
-    integer :: i, line
-    found = model%procedure_card(s)
-    do i = 1, size(step)
-      if (step(i) > s .or. .not. is_keyword(model%cards(i), 'DLOAD')) cycle
-      do line = 1, model%cards(i)%num_lines
-        if (elements_in_words(model%cards(i), line)//' '//model%cards(i)%word_at(line, 2) &
-            == target) found = i
-      end do
+    type(weights_by_element), intent(in) :: list
+    integer, intent(in) :: element !< position
+    real(rk), intent(in) :: direction(3) !< of length 1
+    integer :: i
+    i = list%newest(element)
+    do while (i > 0)
+      owner = list%load(i)
+      select type (weight => model%problem%loads(owner)%item)
+      type is (gravity_load)
+        if (norm2(weight%acceleration - direction) <= round_off) return
+      end select
+      i = list%before(i)
     end do
-  end function card_of_dload
+    owner = 0
+  end function owner_of
+
+  !> The last card that gives a weight, up to a step; else the card of the step's procedure.
+  pure integer function card_of_weight(model, cards, s, target) result(found)
+    type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
+    integer, intent(in) :: s !< step
+    character(*), intent(in) :: target !< of the load: 'DAM GRAV'
+    found = cards%find('DLOAD', target, s)
+    if (found == 0) found = model%procedure_card(s)
+  end function card_of_weight
 
   !> Records of base motion whose end value acts on.
-  subroutine warn_of_records(model, step, faults)
+  subroutine warn_of_records(model, cards, faults)
     type(draft), intent(in) :: model
-    integer, intent(in) :: step(:) !< of each card
+    type(load_card_list), intent(in) :: cards
     type(diagnostic_list), intent(inout) :: faults
     integer :: i, s
     do s = 1, size(model%problem%steps)
@@ -186,16 +224,16 @@ contains
           if (work%amplitude == 0) cycle
           select type (item => model%problem%loads(work%load)%item)
           type is (base_motion)
-            call warn_of_end(model, step, s, item%dof, work, faults)
+            call warn_of_end(model, cards, s, item%dof, work, faults)
           end select
         end associate
       end do
     end do
   end subroutine warn_of_records
 
-  subroutine warn_of_end(model, step, s, dof, work, faults)
+  subroutine warn_of_end(model, cards, s, dof, work, faults)
     type(draft), intent(in) :: model
-    integer, intent(in) :: step(:) !< of each card
+    type(load_card_list), intent(in) :: cards
     integer, intent(in) :: s, dof
     type(step_load), intent(in) :: work
     type(diagnostic_list), intent(inout) :: faults
@@ -206,28 +244,13 @@ contains
       if (abs(last) <= small_share*maxval(abs(record%value))) return
       ends_at = record%time(size(record%time))
       if (ends_at > (1.0_rk + round_off)*end_of_clock(model, s, record)) return
-      place = card_of_motion(model, step, s, dof, record%name)
+      place = cards%find('BASE MOTION', target_of_motion(dof, record%name), s)
       if (place == 0) return
       call model%cards(place)%warn(faults, "the record '"//record%name//"' ends at "// &
                                    as_text(last*work%end_factor)//', not at zero: this '// &
                                    'acceleration goes on after t = '//as_text(ends_at)//' s')
     end associate
   end subroutine warn_of_end
-
-  !> The last *BASE MOTION, up to a step, that moves a direction by a record; 0 for none.
-  pure integer function card_of_motion(model, step, s, dof, record) result(place)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: step(:) !< of each card
-    integer, intent(in) :: s, dof
-    character(*), intent(in) :: record !< its name
-    integer :: i
-    place = 0
-    do i = 1, size(step)
-      if (step(i) > s .or. .not. is_keyword(model%cards(i), 'BASE MOTION')) cycle
-      if (model%cards(i)%word('AMPLITUDE') /= record) cycle
-      if (model%cards(i)%integer('DOF') == dof) place = i
-    end do
-  end function card_of_motion
 
   !> Time at the end of a step on the clock of a history [s].
   pure real(rk) function end_of_clock(model, s, record) result(time)

@@ -4,6 +4,7 @@ module check_names
   use file_system, only: link_name
   use model_draft, only: draft
   use named_things, only: joint_names, set_names, surface_names
+  use text_table, only: text_numbers
   implicit none
   private
   public :: verify_names
@@ -26,18 +27,31 @@ contains
     character(*), intent(in) :: parameter_name !< that gives the names
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i, j, place
+    type(text_numbers) :: links
+    integer :: first(size(names)), second(size(names)) !< (links) their names, 0 for none
+    integer :: i, j, n, place
+    if (all(index(names, '/') == 0)) return
+    first = 0
+    second = 0
+    do i = 1, size(names)
+      call links%find_or_add(trim(link_name(names(i))), n)
+      if (first(n) == 0) then
+        first(n) = i
+      else if (second(n) == 0) then
+        second(n) = i
+      end if
+    end do
     do i = 1, size(names)
       if (index(names(i), '/') == 0) cycle
-      do j = 1, size(names)
-        if (j == i .or. link_name(names(i)) /= link_name(names(j))) cycle
-        place = card_with(names(i), parameter_name, model)
-        if (place == 0) cycle
-        call model%cards(place)%fault_parameter( &
-          faults, parameter_name, "'"//trim(names(i))//"' and '"//trim(names(j))// &
-          "' are one name in job.h5", "names that differ by more than '/' and '_'")
-        return
-      end do
+      n = links%find(trim(link_name(names(i))))
+      j = merge(second(n), first(n), first(n) == i)
+      if (j == 0) cycle
+      place = card_with(names(i), parameter_name, model)
+      if (place == 0) cycle
+      call model%cards(place)%fault_parameter( &
+        faults, parameter_name, "'"//trim(names(i))//"' and '"//trim(names(j))// &
+        "' are one name in job.h5", "names that differ by more than '/' and '_'")
+      return
     end do
   end subroutine compare
 

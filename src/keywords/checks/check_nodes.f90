@@ -18,7 +18,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable :: nodes(:)
-    logical, allocatable :: is_held(:, :)
+    logical, allocatable :: is_held(:, :), is_there(:)
     integer :: step(size(model%cards))
     integer :: i, s
     step = steps_of_cards(model%cards)
@@ -31,9 +31,12 @@ contains
           call warn_of_bare_nodes(this, 0, nodes, model, 'its fields stay zero', faults)
         else if (is_keyword(this, 'BOUNDARY') .or. is_keyword(this, 'INITIAL CONDITIONS') .or. &
                  is_keyword(this, 'CLOAD')) then
-          if (max(step(i), 1) /= s) call mark_held(model, max(step(i), 1), is_held)
-          s = max(step(i), 1)
-          call warn_of_lines(this, model, is_held, nodes_there(model, s), faults)
+          if (max(step(i), 1) /= s) then
+            s = max(step(i), 1)
+            call mark_held(model, s, is_held)
+            is_there = nodes_there(model, s)
+          end if
+          call warn_of_lines(this, model, is_held, is_there, faults)
         end if
       end associate
     end do

@@ -3,12 +3,12 @@
 !> *DLOAD or *DSLOAD that leaves loads of the other keyword acting.
 module check_pressures
   use applied_load, only: load
-  use check_loads, only: card_of_dload
   use dam_mesh, only: surface
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
+  use load_cards, only: list_load_cards, load_card_list
   use load_pressure, only: pressure_load
   use load_reservoir, only: reservoir_load
   use model_draft, only: draft
@@ -16,7 +16,20 @@ module check_pressures
   use write_text, only: as_text
   implicit none
   private
-  public :: card_of_faces, find_faces, warn_of_other_keyword, warn_of_pressures
+  public :: card_of_load, find_faces, warn_of_other_keyword, warn_of_pressures
+
+  integer, parameter :: num_kinds = 3 !< of loads on faces
+
+  !> The loads of one kind by face.
+  type :: load_table
+    integer, allocatable :: load(:, :) !< (6, elements) the first load that pushes, 0 for none
+  end type load_table
+
+  !> The faces that loads of earlier steps push in a step.
+  type :: pushed_faces
+    type(load_table) :: tables(num_kinds)
+    logical, allocatable :: has(:) !< (loads) the tables have the faces of this load
+  end type pushed_faces
 
 contains
 
@@ -24,18 +37,23 @@ contains
   subroutine warn_of_pressures(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i, k, element, s
+    type(load_card_list) :: cards
+    type(pushed_faces) :: pushed
+    logical, allocatable :: is_old(:) !< (loads) acts in the step before
+    integer :: s, i, old, element
+    call list_load_cards(model%cards, cards)
+    allocate (is_old(size(model%problem%loads)))
+    allocate (pushed%has(size(is_old)), source=.false.)
     do s = 2, size(model%problem%steps)
-      associate (before => model%problem%steps(s - 1)%loads, now => model%problem%steps(s)%loads)
+      is_old = .false.
+      is_old(model%problem%steps(s - 1)%loads%load) = .true.
+      associate (now => model%problem%steps(s)%loads)
+        if (all(is_old(now%load))) cycle
+        call push_old(model, now, is_old, pushed)
         do i = 1, size(now)
-          if (any(before%load == now(i)%load)) cycle
-          do k = 1, size(now)
-            if (.not. any(before%load == now(k)%load) .or. is_ending(now(k))) cycle
-            element = shared_element(model, now(k)%load, now(i)%load)
-            if (element == 0) cycle
-            call warn_of_both(model, s, element, now(k)%load, now(i)%load, faults)
-            exit
-          end do
+          if (is_old(now(i)%load)) cycle
+          call find_shared(model, now(i)%load, pushed, old, element)
+          if (element > 0) call warn_of_both(model, cards, s, element, old, now(i)%load, faults)
         end do
       end associate
     end do
@@ -48,15 +66,17 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: other
     logical, allocatable :: stays(:)
+    type(load_card_list) :: cards
     logical :: is_named(size(model%problem%loads))
     integer :: step(size(model%cards)), i, first
     step = steps_of_cards(model%cards)
+    call list_load_cards(model%cards, cards)
     is_named = .false.
     do i = 1, size(step)
       if (step(i) < 2 .or. .not. is_pressed_anew(model%cards(i))) cycle
       other = 'DLOAD'
       if (is_keyword(model%cards(i), 'DLOAD')) other = 'DSLOAD'
-      call find_standing(model, step, step(i), other, stays)
+      call find_standing(model, cards, step, step(i), other, stays)
       stays = stays .and. .not. is_named
       if (.not. any(stays)) cycle
       is_named = is_named .or. stays
@@ -86,27 +106,55 @@ contains
 
   !> The loads of a keyword that act in a step, have acted before and are not given in the step.
   !> None where a card of this keyword has OP=NEW in the step.
-  pure subroutine find_standing(model, step, s, keyword, stays)
+  subroutine find_standing(model, cards, step, s, keyword, stays)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
     integer, intent(in) :: step(:) !< of each card
     integer, intent(in) :: s !< step
     character(*), intent(in) :: keyword !< DLOAD or DSLOAD
     logical, allocatable, intent(out) :: stays(:) !< (loads)
+    logical :: is_old(size(model%problem%loads))
     integer :: i, found
-    allocate (stays(size(model%problem%loads)), source=.false.)
+    allocate (stays(size(is_old)), source=.false.)
     do i = 1, size(step)
       if (step(i) /= s .or. .not. is_keyword(model%cards(i), keyword)) cycle
       if (is_pressed_anew(model%cards(i))) return
     end do
-    associate (before => model%problem%steps(s - 1)%loads, now => model%problem%steps(s)%loads)
+    is_old = .false.
+    is_old(model%problem%steps(s - 1)%loads%load) = .true.
+    associate (now => model%problem%steps(s)%loads)
       do i = 1, size(now)
         if (model%problem%loads(now(i)%load)%item%family /= keyword) cycle
-        if (is_ending(now(i)) .or. .not. any(before%load == now(i)%load)) cycle
-        found = card_of_faces(model, s, model%problem%loads(now(i)%load)%item)
+        if (is_ending(now(i)) .or. .not. is_old(now(i)%load)) cycle
+        found = card_of_load(model, cards, s, model%problem%loads(now(i)%load)%item)
         stays(now(i)%load) = step(found) < s
       end do
     end associate
   end subroutine find_standing
+
+  !> Enters the loads of earlier steps that go on. While none of them ends, only those that have
+  !> come are entered.
+  subroutine push_old(model, now, is_old, pushed)
+    type(draft), intent(in) :: model
+    type(step_load), intent(in) :: now(:) !< loads of the step
+    logical, intent(in) :: is_old(:) !< (loads) acts in the step before
+    type(pushed_faces), intent(inout) :: pushed
+    logical :: goes_on(size(is_old))
+    integer :: i
+    goes_on = .false.
+    do i = 1, size(now)
+      goes_on(now(i)%load) = is_old(now(i)%load) .and. .not. is_ending(now(i))
+    end do
+    if (any(pushed%has .and. .not. goes_on)) then
+      pushed%has = .false.
+      do i = 1, num_kinds
+        if (allocated(pushed%tables(i)%load)) pushed%tables(i)%load = 0
+      end do
+    end if
+    do i = 1, size(goes_on)
+      if (goes_on(i) .and. .not. pushed%has(i)) call push_faces(model, i, pushed)
+    end do
+  end subroutine push_old
 
   !> Whether a load fades to zero in its step.
   pure logical function is_ending(work)
@@ -114,33 +162,57 @@ contains
     is_ending = work%amplitude == 0 .and. abs(work%end_factor) <= 0.0_rk
   end function is_ending
 
-  !> An element with a face that two loads of one kind push, of *DLOAD or *DSLOAD; 0 for none.
-  pure integer function shared_element(model, first, second) result(element)
+  !> Enters the faces of a load.
+  subroutine push_faces(model, number, pushed)
     type(draft), intent(in) :: model
-    integer, intent(in) :: first, second !< loads
-    type(surface) :: old, new
-    integer, allocatable :: pushed(:) !< (elements) a bit for each face of the first load
-    integer :: i, old_kind, new_kind
-    element = 0
-    associate (loads => model%problem%loads)
-      if (loads(first)%item%family == loads(second)%item%family .and. &
-          loads(first)%item%target == loads(second)%item%target) return
-      call find_faces(loads(first)%item, old, old_kind)
-      call find_faces(loads(second)%item, new, new_kind)
+    integer, intent(in) :: number !< of the load
+    type(pushed_faces), intent(inout) :: pushed
+    type(surface) :: faces
+    integer :: i, kind
+    pushed%has(number) = .true.
+    call find_faces(model%problem%loads(number)%item, faces, kind)
+    if (kind == 0) return
+    associate (table => pushed%tables(kind))
+      if (.not. allocated(table%load)) then
+        allocate (table%load(6, model%problem%mesh%num_elements), source=0)
+      end if
+      do i = 1, size(faces%element)
+        associate (first => table%load(faces%face(i), faces%element(i)))
+          if (first == 0 .or. first > number) first = number
+        end associate
+      end do
     end associate
-    if (old_kind /= new_kind .or. new_kind == 0) return
-    allocate (pushed(model%problem%mesh%num_elements), source=0)
-    do i = 1, size(old%element)
-      pushed(old%element(i)) = ibset(pushed(old%element(i)), old%face(i))
-    end do
-    do i = 1, size(new%element)
-      element = new%element(i)
-      if (btest(pushed(element), new%face(i))) return
-    end do
-    element = 0
-  end function shared_element
+  end subroutine push_faces
 
-  !> The faces that a load pushes, and its kind: 0 for a load without faces.
+  !> The first load of an earlier step that pushes a face of a new one, and the first element with
+  !> such a face. A load that the new step gives again under the name of the new one is meant.
+  subroutine find_shared(model, new, pushed, old, element)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: new !< load
+    type(pushed_faces), intent(in) :: pushed
+    integer, intent(out) :: old !< load, 0 for none
+    integer, intent(out) :: element !< position, 0 for none
+    type(surface) :: faces
+    integer :: i, kind, other
+    old = 0
+    element = 0
+    call find_faces(model%problem%loads(new)%item, faces, kind)
+    if (kind == 0) return
+    associate (table => pushed%tables(kind), loads => model%problem%loads)
+      if (.not. allocated(table%load)) return
+      do i = 1, size(faces%element)
+        other = table%load(faces%face(i), faces%element(i))
+        if (other == 0 .or. (old > 0 .and. other >= old)) cycle
+        if (loads(other)%item%target == loads(new)%item%target .and. &
+            loads(other)%item%family == loads(new)%item%family) cycle
+        old = other
+        element = faces%element(i)
+      end do
+    end associate
+  end subroutine find_shared
+
+  !> The faces that a load pushes, and its kind: 1 uniform pressure, 2 hydrostatic pressure, 3 water
+  !> of a reservoir, 0 for a load without faces.
   pure subroutine find_faces(item, faces, kind)
     class(load), intent(in) :: item
     type(surface), intent(out) :: faces
@@ -157,16 +229,15 @@ contains
   end subroutine find_faces
 
   !> The warning, at the last card that gives the new load.
-  subroutine warn_of_both(model, s, element, first, second, faults)
+  subroutine warn_of_both(model, cards, s, element, first, second, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
     integer, intent(in) :: s !< step
     integer, intent(in) :: element !< position
     integer, intent(in) :: first, second !< loads
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: what, remedy
-    integer :: found
     associate (loads => model%problem%loads)
-      found = card_of_faces(model, s, loads(second)%item)
       what = 'pressure'
       remedy = 'a load is replaced under its own name, or with OP=NEW of *'// &
                loads(first)%item%family
@@ -174,43 +245,20 @@ contains
         what = 'water of *RESERVOIR'
         remedy = 'a reservoir is replaced under its own name, and emptied there by HYDROSTATIC=NO'
       end if
-      call model%cards(found)%warn( &
+      call model%cards(card_of_load(model, cards, s, loads(second)%item))%warn( &
         faults, 'element '//as_text(model%problem%mesh%element_id(element))//' keeps the '// &
         what//" '"//loads(first)%item%target//"' of an earlier step beside '"// &
         loads(second)%item%target//"': "//remedy)
     end associate
   end subroutine warn_of_both
 
-  !> The last card that gives a load on faces, up to a step.
-  pure integer function card_of_faces(model, s, item) result(found)
+  !> The last card that gives a load, up to a step; else the card of the step's procedure.
+  pure integer function card_of_load(model, cards, s, item) result(found)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
     integer, intent(in) :: s !< step
     class(load), intent(in) :: item
-    integer :: step(size(model%cards)), i, line
-    step = steps_of_cards(model%cards)
-    if (item%family == 'DLOAD') then
-      found = card_of_dload(model, step, s, item%target)
-      return
-    end if
-    found = model%procedure_card(s)
-    do i = 1, size(step)
-      if (step(i) > s .or. .not. is_keyword(model%cards(i), item%family)) cycle
-      if (item%family == 'RESERVOIR') then
-        if (model%cards(i)%word('NAME') == item%target) found = i
-        cycle
-      end if
-      do line = 1, model%cards(i)%num_lines
-        if (target_of_dsload(model%cards(i), line) == item%target) found = i
-      end do
-    end do
-  end function card_of_faces
-
-  !> The target of the load that a line of *DSLOAD gives.
-  pure function target_of_dsload(this, line) result(target)
-    type(card), intent(in) :: this
-    integer, intent(in) :: line
-    character(:), allocatable :: target
-    target = this%word_at(line, 1)
-    if (this%word_at(line, 2) == 'HP') target = target//' HP'
-  end function target_of_dsload
+    found = cards%find(item%family, item%target, s)
+    if (found == 0) found = model%procedure_card(s)
+  end function card_of_load
 end module check_pressures

@@ -8,6 +8,7 @@ module check_steps
   use keywords_output, only: fields_of_envelope
   use model_draft, only: draft, kept_support
   use step_plan, only: field_name_length
+  use text_table, only: text_numbers
   use write_text, only: as_text
   implicit none
   private
@@ -37,17 +38,18 @@ contains
     type(draft), intent(in) :: model
     integer, intent(in) :: step(:) !< of each card
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i, j
+    type(text_numbers) :: names
+    integer :: first(size(model%problem%steps)) !< (names) step
+    integer :: i, n
+    first = 0
     do i = 1, size(step)
       if (.not. is_keyword(model%cards(i), 'STEP')) cycle
-      if (.not. model%cards(i)%has('NAME')) cycle
-      do j = 1, step(i) - 1
-        if (model%problem%steps(j)%name /= model%cards(i)%word('NAME')) cycle
-        call model%cards(i)%warn(faults, "step '"//model%cards(i)%text('NAME')// &
-                                 "' has the name of step "//as_text(j)// &
-                                 ': both run, and results distinguish them by their numbers')
-        exit
-      end do
+      call names%find_or_add(model%problem%steps(step(i))%name, n)
+      if (first(n) == 0) first(n) = step(i)
+      if (first(n) == step(i) .or. .not. model%cards(i)%has('NAME')) cycle
+      call model%cards(i)%warn(faults, "step '"//model%cards(i)%text('NAME')// &
+                               "' has the name of step "//as_text(first(n))// &
+                               ': both run, and results distinguish them by their numbers')
     end do
   end subroutine warn_of_names
 
@@ -130,17 +132,19 @@ contains
     type(draft), intent(in) :: model
     integer, intent(in) :: step(:) !< of each card
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i, j
+    type(text_numbers) :: names
+    integer :: last(size(step)) !< (names) step that has given the reservoir last
+    integer :: i, n
+    last = 0
     do i = 1, size(step)
       if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
-      do j = 1, i - 1
-        if (step(j) /= step(i) .or. .not. is_keyword(model%cards(j), 'RESERVOIR')) cycle
-        if (model%cards(j)%word('NAME') /= model%cards(i)%word('NAME')) cycle
+      call names%find_or_add(model%cards(i)%word('NAME'), n)
+      if (last(n) == step(i)) then
         call model%cards(i)%warn(faults, "reservoir '"//model%cards(i)%text('NAME')// &
                                  "' is given twice in this step: the pressures and the added "// &
                                  'masses of both act')
-        exit
-      end do
+      end if
+      last(n) = step(i)
     end do
   end subroutine warn_of_reservoirs
 
@@ -151,6 +155,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(longest_key), allocatable :: seen(:), own(:)
     character(field_name_length) :: word
+    logical, allocatable :: is_new(:)
     integer :: i, k, opened
     allocate (seen(0))
     opened = 0
@@ -159,14 +164,14 @@ contains
       opened = step(i)
       if (.not. is_keyword(model%cards(i), 'ENVELOPE')) cycle
       own = fields_of_envelope(model%cards(i))//model%cards(i)%word('POSITION')
-      do k = 1, size(own)
-        if (.not. any(seen == own(k))) cycle
+      is_new = [(.not. any(seen == own(k)), k=1, size(own))]
+      k = findloc(is_new, .false., dim=1)
+      if (k > 0) then
         word = own(k) (:field_name_length)
         call model%cards(i)%warn(faults, 'an *ENVELOPE of this step requests '//trim(word)// &
                                  ' already; it is recorded once')
-        exit
-      end do
-      seen = [character(longest_key) :: seen, own]
+      end if
+      seen = [character(longest_key) :: seen, pack(own, is_new)]
     end do
   end subroutine warn_of_envelopes
 

@@ -8,6 +8,7 @@ module check_water
   use mesh_faces, only: face_nodes
   use model_draft, only: draft
   use named_things, only: find_surface_name
+  use text_table, only: text_numbers
   use write_text, only: as_text
   implicit none
   private
@@ -21,32 +22,43 @@ contains
   subroutine warn_of_water(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    integer :: step(size(model%cards))
+    integer :: step(size(model%cards)), earlier(size(model%cards))
     integer :: i
     step = steps_of_cards(model%cards)
+    earlier = earlier_reservoirs(model, step)
     do i = 1, size(step)
       if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
-      if (empties(model, step, i)) cycle
+      if (earlier(i) > 0) then
+        if (empties(model%cards(i), model%cards(earlier(i)))) cycle
+      end if
       call warn_of_effects(model%cards(i), model, step(i), faults)
       call warn_of_height(model%cards(i), model, faults)
       call warn_of_axis(model%cards(i), model, step(i), faults)
     end do
   end subroutine warn_of_water
 
-  !> Whether a card without pressure and mass empties a reservoir of an earlier step.
-  pure logical function empties(model, step, i)
+  !> The last card of each reservoir in an earlier step, 0 for none and for other cards.
+  pure function earlier_reservoirs(model, step) result(earlier)
     type(draft), intent(in) :: model
     integer, intent(in) :: step(:) !< of each card
-    integer, intent(in) :: i !< card
-    integer :: k
-    empties = .false.
-    if (has_water(model%cards(i))) return
-    do k = i - 1, 1, -1
-      if (step(k) == step(i) .or. .not. is_keyword(model%cards(k), 'RESERVOIR')) cycle
-      if (model%cards(k)%word('NAME') /= model%cards(i)%word('NAME')) cycle
-      empties = has_water(model%cards(k))
-      return
+    integer :: earlier(size(step))
+    type(text_numbers) :: names
+    integer :: last(size(step)) !< (names) card
+    integer :: i, n
+    earlier = 0
+    last = 0
+    do i = 1, size(step)
+      if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
+      call names%find_or_add(model%cards(i)%word('NAME'), n)
+      if (last(n) > 0) earlier(i) = merge(earlier(last(n)), last(n), step(last(n)) == step(i))
+      last(n) = i
     end do
+  end function earlier_reservoirs
+
+  !> Whether a card without pressure and mass empties the reservoir of an earlier step.
+  pure logical function empties(this, earlier)
+    type(card), intent(in) :: this, earlier
+    empties = .not. has_water(this) .and. has_water(earlier)
   end function empties
 
   !> Whether a *RESERVOIR has pressure or mass.
@@ -114,12 +126,13 @@ contains
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i, axis
+    integer :: i, axis, up
+    up = this%integer('UP')
     do i = 1, size(model%problem%steps(s)%loads)
       select type (weight => model%problem%loads(model%problem%steps(s)%loads(i)%load)%item)
       type is (gravity_load)
         axis = maxloc(abs(weight%acceleration), dim=1)
-        if (axis == this%integer('UP')) cycle
+        if (axis == up) cycle
         call this%warn(faults, 'the water stands along axis '//as_text(this%integer('UP'))// &
                        ' (UP), and the weight of this step acts along axis '//as_text(axis))
         return
@@ -136,13 +149,14 @@ contains
     integer, intent(in) :: s !< step
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: upwards
-    integer :: i
+    integer :: i, up
+    up = this%integer('UP')
     upwards = 0.0_rk
     do i = 1, size(model%problem%steps(s)%loads)
       associate (work => model%problem%steps(s)%loads(i))
         select type (weight => model%problem%loads(work%load)%item)
         type is (gravity_load)
-          upwards = work%end_factor*weight%acceleration(this%integer('UP'))
+          upwards = work%end_factor*weight%acceleration(up)
           if (work%amplitude > 0 .or. .not. upwards > 0.0_rk) return
         end select
       end associate

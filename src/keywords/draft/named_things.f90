@@ -3,7 +3,7 @@
 module named_things
   use card_check, only: found_no_integer, is_too_large, longest_name
   use deck_card, only: card
-  use diagnostics, only: diagnostic_list
+  use diagnostics, only: diagnostic_list, is_shown
   use id_map, only: position_table
   use model_draft, only: draft
   use nearest_words, only: nearest_word
@@ -13,7 +13,7 @@ module named_things
   implicit none
   private
   public :: nodes_at, nodes_in_order_at, elements_at, elements_of_set, nodes_of_set
-  public :: find_surface_name, find_surface_at, find_amplitude, find_material
+  public :: find_surface, find_surface_name, find_surface_at, find_amplitude, find_material
   public :: joint_names, set_names, surface_names, longest_name, with_article
 
 contains
@@ -179,16 +179,19 @@ contains
     character(*), intent(in) :: kind !< 'node' or 'element'
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: problem, nearest
     if (is_too_large(this%text_at(line, field))) then
       call this%fault_at(faults, line, field, found_no_integer(this%text_at(line, field)), &
                          'the id of one '//kind)
       return
     end if
-    call this%fault_at(faults, line, field, &
-                       'there is no '//kind//" set '"//this%text_at(line, field)// &
-                       "' above this line", &
-                       'the id of one '//kind//' or the name of a set defined above', &
-                       nearest_word(this%word_at(line, field), set_names(sets)))
+    problem = 'there is no '//kind//" set '"//this%text_at(line, field)//"' above this line"
+    nearest = ''
+    if (is_shown(faults, problem)) then
+      nearest = nearest_word(this%word_at(line, field), set_names(sets))
+    end if
+    call this%fault_at(faults, line, field, problem, &
+                       'the id of one '//kind//' or the name of a set defined above', nearest)
   end subroutine fault_unknown_set
 
   !> Elements of the set that a parameter names; empty after a fault.
@@ -217,17 +220,21 @@ contains
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
+    character(:), allocatable :: problem, nearest
     integer :: found
-    allocate (members(0))
     found = sets%find(this%word(parameter))
     if (found > 0) then
       members = sets%sets(found)%members
-    else
-      call this%fault_parameter(faults, parameter, 'there is no '//kind//" set '"// &
-                                this%text(parameter)//"' above this line", &
-                                'the name of a set defined above', &
-                                nearest_word(this%word(parameter), set_names(sets)))
+      return
     end if
+    allocate (members(0))
+    problem = 'there is no '//kind//" set '"//this%text(parameter)//"' above this line"
+    nearest = ''
+    if (is_shown(faults, problem)) then
+      nearest = nearest_word(this%word(parameter), set_names(sets))
+    end if
+    call this%fault_parameter(faults, parameter, problem, 'the name of a set defined above', &
+                              nearest)
   end subroutine members_of_set
 
   !> Position of the surface of that name, 0 when there is none so far.
@@ -245,15 +252,36 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
     integer, intent(in), optional :: field
+    character(:), allocatable :: problem, nearest
     integer :: at
     at = 1
     if (present(field)) at = field
     found = find_surface_name(model, this%word_at(line, at))
     if (found > 0) return
-    call this%fault_at(faults, line, at, "there is no surface '"//this%text_at(line, at)// &
-                       "' above this line", 'a surface defined above', &
-                       nearest_word(this%word_at(line, at), surface_names(model)))
+    problem = "there is no surface '"//this%text_at(line, at)//"' above this line"
+    nearest = ''
+    if (is_shown(faults, problem)) then
+      nearest = nearest_word(this%word_at(line, at), surface_names(model))
+    end if
+    call this%fault_at(faults, line, at, problem, 'a surface defined above', nearest)
   end subroutine find_surface_at
+
+  !> Position of the surface that SURFACE names; 0 after a fault.
+  subroutine find_surface(this, model, faults, found)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    integer, intent(out) :: found
+    character(:), allocatable :: problem, nearest
+    found = find_surface_name(model, this%word('SURFACE'))
+    if (found > 0) return
+    problem = "there is no surface '"//this%text('SURFACE')//"' above this line"
+    nearest = ''
+    if (is_shown(faults, problem)) then
+      nearest = nearest_word(this%word('SURFACE'), surface_names(model))
+    end if
+    call this%fault_parameter(faults, 'SURFACE', problem, 'a surface defined above', nearest)
+  end subroutine find_surface
 
   !> Names of surfaces.
   pure function surface_names(model) result(names)
@@ -271,19 +299,28 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(longest_name) :: known(model%num_amplitudes)
-    integer :: i
+    character(:), allocatable :: problem, nearest
     found = 0
     if (.not. this%has('AMPLITUDE')) return
     found = model%amplitude_of_name%find(this%word('AMPLITUDE'))
     if (found > 0) return
-    do i = 1, size(known)
-      known(i) = model%problem%amplitudes(i)%name
-    end do
-    call this%fault_parameter(faults, 'AMPLITUDE', "there is no amplitude '"// &
-                              this%text('AMPLITUDE')//"'", 'the name of an *AMPLITUDE', &
-                              nearest_word(this%word('AMPLITUDE'), known))
+    problem = "there is no amplitude '"//this%text('AMPLITUDE')//"'"
+    nearest = ''
+    if (is_shown(faults, problem)) then
+      nearest = nearest_word(this%word('AMPLITUDE'), amplitude_names(model))
+    end if
+    call this%fault_parameter(faults, 'AMPLITUDE', problem, 'the name of an *AMPLITUDE', nearest)
   end subroutine find_amplitude
+
+  !> Names of amplitudes.
+  pure function amplitude_names(model) result(names)
+    type(draft), intent(in) :: model
+    character(longest_name) :: names(model%num_amplitudes)
+    integer :: i
+    do i = 1, size(names)
+      names(i) = model%problem%amplitudes(i)%name
+    end do
+  end function amplitude_names
 
   !> Position of the material that MATERIAL names; 0 after a fault.
   subroutine find_material(this, model, faults, found)
@@ -291,17 +328,26 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(longest_name) :: known(model%num_materials)
-    integer :: i
+    character(:), allocatable :: problem, nearest
     found = model%material_of_name%find(this%word('MATERIAL'))
     if (found > 0) return
-    do i = 1, size(known)
-      known(i) = model%problem%materials(i)%name
-    end do
-    call this%fault_parameter(faults, 'MATERIAL', "there is no material '"// &
-                              this%text('MATERIAL')//"'", 'the name of a *MATERIAL', &
-                              nearest_word(this%word('MATERIAL'), known))
+    problem = "there is no material '"//this%text('MATERIAL')//"'"
+    nearest = ''
+    if (is_shown(faults, problem)) then
+      nearest = nearest_word(this%word('MATERIAL'), material_names(model))
+    end if
+    call this%fault_parameter(faults, 'MATERIAL', problem, 'the name of a *MATERIAL', nearest)
   end subroutine find_material
+
+  !> Names of materials.
+  pure function material_names(model) result(names)
+    type(draft), intent(in) :: model
+    character(longest_name) :: names(model%num_materials)
+    integer :: i
+    do i = 1, size(names)
+      names(i) = model%problem%materials(i)%name
+    end do
+  end function material_names
 
   !> Names of joints.
   pure function joint_names(model) result(names)

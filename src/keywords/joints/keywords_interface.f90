@@ -5,8 +5,7 @@ module keywords_interface
   use keyword_spec, only: keyword, field, kind_real, kind_word
   use kinds, only: rk
   use model_draft, only: draft, interface_request
-  use named_things, only: elements_of_set, find_surface_name, surface_names
-  use nearest_words, only: nearest_word
+  use named_things, only: elements_of_set, find_surface
   use write_text, only: as_text
   implicit none
   private
@@ -51,13 +50,7 @@ contains
                                 "' is defined twice", 'a name that is used once', &
                                 first=model%cards(model%interfaces(i)%spot%card)%place())
     end do
-    new%surface = find_surface_name(model, this%word('SURFACE'))
-    if (new%surface == 0) then
-      call this%fault_parameter(faults, 'SURFACE', "there is no surface '"// &
-                                this%text('SURFACE')//"' above this line", &
-                                'a surface defined above', &
-                                nearest_word(this%word('SURFACE'), surface_names(model)))
-    end if
+    call find_surface(this, model, faults, new%surface)
     call elements_of_set(this, 'ELSET', model, faults, new%elements)
     call claim_elements(this, new%elements, model, faults)
     model%interfaces = [model%interfaces, new]

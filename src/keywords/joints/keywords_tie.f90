@@ -6,8 +6,7 @@ module keywords_tie
   use keywords_other, only: add_idle_parameters
   use kinds, only: rk
   use model_draft, only: draft, tie_request
-  use named_things, only: find_surface_name, surface_names
-  use nearest_words, only: nearest_word
+  use named_things, only: find_surface_at
   implicit none
   private
   public :: describe_tie, read_tie
@@ -75,8 +74,8 @@ contains
     end do
     do line = 1, this%num_lines
       new%spot = model%here(line)
-      call find_surface(this, line, 1, model, faults, new%slave)
-      call find_surface(this, line, 2, model, faults, new%master)
+      call find_surface_at(this, line, model, faults, new%slave)
+      call find_surface_at(this, line, model, faults, new%master, field=2)
       if (new%slave > 0 .and. new%slave == new%master) then
         call this%fault_at(faults, line, 2, 'the master surface is the slave surface', &
                            'another surface')
@@ -106,18 +105,4 @@ contains
       return
     end do
   end subroutine check_pair
-
-  !> Position of the surface named in a field; 0 after a fault.
-  subroutine find_surface(this, line, number, model, faults, found)
-    type(card), intent(in) :: this
-    integer, intent(in) :: line, number
-    type(draft), intent(in) :: model
-    type(diagnostic_list), intent(inout) :: faults
-    integer, intent(out) :: found
-    found = find_surface_name(model, this%word_at(line, number))
-    if (found > 0) return
-    call this%fault_at(faults, line, number, "there is no surface '"// &
-                       this%text_at(line, number)//"' above this line", 'a surface defined above', &
-                       nearest_word(this%word_at(line, number), surface_names(model)))
-  end subroutine find_surface
 end module keywords_tie

@@ -8,8 +8,7 @@ module keywords_reservoir
   use kinds, only: rk
   use load_reservoir, only: reservoir_load, wetted_area
   use model_draft, only: draft
-  use named_things, only: find_surface_name, surface_names
-  use nearest_words, only: nearest_word
+  use named_things, only: find_surface
   use write_text, only: as_text
   implicit none
   private
@@ -59,14 +58,8 @@ contains
     type(reservoir_load) :: lake
     class(load), allocatable :: item
     integer :: found
-    found = find_surface_name(model, this%word('SURFACE'))
-    if (found == 0) then
-      call this%fault_parameter(faults, 'SURFACE', "there is no surface '"// &
-                                this%text('SURFACE')//"' above this line", &
-                                'a surface defined above', &
-                                nearest_word(this%word('SURFACE'), surface_names(model)))
-      return
-    end if
+    call find_surface(this, model, faults, found)
+    if (found == 0) return
     if (this%real('LEVEL') <= this%real('BED')) then
       call this%fault_parameter(faults, 'LEVEL', "found '"//this%text('LEVEL')//"'", &
                                 'a level above BED, '//this%text('BED')//'; to empty '// &

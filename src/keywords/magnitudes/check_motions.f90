@@ -2,12 +2,11 @@
 !> begin with a jump.
 module check_motions
   use amplitudes, only: amplitude, amplitude_at, one_g
-  use check_loads, only: card_of_motion
   use check_units, only: has_other_length, unit_of_length
-  use deck_scan, only: steps_of_cards
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_base_motion, only: base_motion
+  use load_cards, only: list_load_cards, load_card_list, target_of_motion
   use load_gravity, only: gravity_load
   use model_draft, only: draft
   use step_plan, only: span_of_step, step_load
@@ -39,11 +38,13 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     type(view_of_record) :: views(size(model%problem%amplitudes))
+    type(load_card_list) :: cards
     integer :: s, i
+    call list_load_cards(model%cards, cards)
     do s = 1, size(model%problem%steps)
       if (.not. model%problem%steps(s)%procedure%has_inertia) cycle
       do i = 1, size(model%problem%steps(s)%loads)
-        call look_at_load(model, s, model%problem%steps(s)%loads(i), views, faults)
+        call look_at_load(model, cards, s, model%problem%steps(s)%loads(i), views, faults)
       end do
     end do
     do i = 1, size(views)
@@ -52,8 +53,9 @@ contains
   end subroutine warn_of_motions
 
   !> A load of a step, if it is a base motion.
-  subroutine look_at_load(model, s, work, views, faults)
+  subroutine look_at_load(model, cards, s, work, views, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
     integer, intent(in) :: s !< step
     type(step_load), intent(in) :: work
     type(view_of_record), intent(inout) :: views(:) !< (amplitudes)
@@ -68,7 +70,7 @@ contains
         view%seen = max(view%seen, peak)
         view%until = max(view%until, span(2))
         if (view%place > 0) return
-        view%place = card_of_motion(model, steps_of_cards(model%cards), s, motion%dof, record%name)
+        view%place = cards%find('BASE MOTION', target_of_motion(motion%dof, record%name), s)
         if (view%place == 0) return
         call warn_of_start(model, view%place, s, record, faults)
         call warn_of_peak(model, view%place, work, record, faults)

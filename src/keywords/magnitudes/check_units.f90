@@ -92,9 +92,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: why
     logical :: in_metres
-    integer :: i
+    integer :: record(size(model%problem%amplitudes)) !< its card
+    integer :: i, a
     why = sign_of_other_units(model%problem%materials)
     if (why == '') return
+    record = cards_of_records(model)
     why = ' in a deck with a '//why//', which is not in SI ('
     in_metres = .not. has_other_length(model%problem%materials)
     if (in_metres) then
@@ -129,11 +131,23 @@ contains
         else if (is_keyword(this, 'DLOAD')) then
           call warn_of_gravity(this, why, faults)
         else if (is_keyword(this, 'BASE MOTION')) then
-          call warn_of_record(this, model, why, faults)
+          a = model%amplitude_of_name%find(this%word('AMPLITUDE'))
+          call warn_of_record(this, model%cards(record(a)), why, faults)
         end if
       end associate
     end do
   end subroutine warn_of_units
+
+  !> The card of each amplitude.
+  pure function cards_of_records(model) result(place)
+    type(draft), intent(in) :: model
+    integer :: place(size(model%problem%amplitudes))
+    integer :: i
+    do i = 1, size(model%cards)
+      if (.not. is_keyword(model%cards(i), 'AMPLITUDE')) cycle
+      place(model%amplitude_of_name%find(model%cards(i)%word('NAME'))) = i
+    end do
+  end function cards_of_records
 
   pure logical function is_g_in_metres(g)
     real(rk), intent(in) :: g
@@ -155,22 +169,13 @@ contains
   end subroutine warn_of_gravity
 
   !> A record that its unit has turned into m/s2.
-  subroutine warn_of_record(this, model, why, faults)
-    type(card), intent(in) :: this
-    type(draft), intent(in) :: model
+  subroutine warn_of_record(this, record, why, faults)
+    type(card), intent(in) :: this, record !< *BASE MOTION and its *AMPLITUDE
     character(*), intent(in) :: why
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i
-    do i = 1, size(model%cards)
-      associate (record => model%cards(i))
-        if (.not. is_keyword(record, 'AMPLITUDE')) cycle
-        if (record%word('NAME') /= this%word('AMPLITUDE')) cycle
-        if (.not. record%has('UNIT') .and. record%word('FORMAT') /= 'AT2') cycle
-        if (abs(this%real('SCALE')*record%real('SCALE')) >= largest_scale) cycle
-        call this%warn(faults, "the record '"//this%text('AMPLITUDE')//"' is turned into m/s2"// &
-                       why//'; SCALE=1000 here turns it into mm/s2')
-        return
-      end associate
-    end do
+    if (.not. record%has('UNIT') .and. record%word('FORMAT') /= 'AT2') return
+    if (abs(this%real('SCALE')*record%real('SCALE')) >= largest_scale) return
+    call this%warn(faults, "the record '"//this%text('AMPLITUDE')//"' is turned into m/s2"// &
+                   why//'; SCALE=1000 here turns it into mm/s2')
   end subroutine warn_of_record
 end module check_units

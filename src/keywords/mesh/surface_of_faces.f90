@@ -1,13 +1,13 @@
 !> *SURFACE, TYPE=ELEMENT SET: the faces of solids that elements of faces in the deck lie on.
 module surface_of_faces
-  use card_check, only: longest_name
   use dam_mesh, only: surface
   use deck_card, only: card
-  use diagnostics, only: diagnostic_list
+  use diagnostics, only: diagnostic_list, is_shown
   use element_catalogue, only: is_solid
   use growing_lists, only: append
   use mesh_faces, only: face_nodes, face_table, find_exterior, find_face, insert_face, open_table
   use model_draft, only: draft
+  use named_things, only: set_names
   use nearest_words, only: nearest_word
   use sorted_lists, only: sorted_unique
   use write_text, only: as_text
@@ -87,20 +87,21 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
-    character(longest_name) :: known(model%faces%sets%num_sets)
-    integer :: i, number
+    character(:), allocatable :: problem, nearest
+    integer :: number
     allocate (members(0))
-    do i = 1, size(known)
-      known(i) = model%faces%sets%sets(i)%name
-    end do
     number = model%faces%sets%find(this%word_at(line, 1))
     if (this%num_fields(line) > 1) then
       call this%fault_at(faults, line, 2, "found '"//this%text_at(line, 2)//"'", &
                          'the name of a set alone')
     else if (number == 0) then
-      call this%fault_at(faults, line, 1, "there is no set of faces '"//this%text_at(line, 1)// &
-                         "'", 'a set of elements CPS4, S4, CPS3 or the like beside the solids', &
-                         nearest_word(this%word_at(line, 1), known))
+      problem = "there is no set of faces '"//this%text_at(line, 1)//"'"
+      nearest = ''
+      if (is_shown(faults, problem)) then
+        nearest = nearest_word(this%word_at(line, 1), set_names(model%faces%sets))
+      end if
+      call this%fault_at(faults, line, 1, problem, &
+                         'a set of elements CPS4, S4, CPS3 or the like beside the solids', nearest)
     else
       members = model%faces%sets%sets(number)%members
     end if

@@ -8,6 +8,7 @@ module history_file
   use parse_text, only: largest_number, parse_integer, parse_real, upper_case
   use process_limits, only: why_no_file
   use record_units, only: record_header
+  use text_buffers, only: text_buffer
   use utf8_text, only: make_utf8
   implicit none
   private
@@ -75,14 +76,19 @@ contains
     integer, intent(in) :: unit
     character(:), allocatable, intent(out) :: line
     integer, intent(out) :: status !< not zero at the end of the file
+    type(text_buffer) :: longer
     character(256) :: piece
     integer :: length
-    line = ''
-    do
-      read (unit, '(a)', advance='no', iostat=status, size=length) piece
-      line = line//piece(:length)
-      if (status /= 0) exit
-    end do
+    read (unit, '(a)', advance='no', iostat=status, size=length) piece
+    line = piece(:length)
+    if (status == 0) then
+      call longer%add(line)
+      do while (status == 0)
+        read (unit, '(a)', advance='no', iostat=status, size=length) piece
+        call longer%add(piece(:length))
+      end do
+      line = longer%contents()
+    end if
     call make_utf8(line, first_letter(line))
     if (is_iostat_eor(status)) status = 0
     if (status /= 0) status = iostat_end

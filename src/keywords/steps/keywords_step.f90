@@ -92,8 +92,9 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (model%now%procedure%name == '' .and. .not. has_faulty_procedure(model)) then
-      call this%fault(faults, 'the step has no procedure', list_procedures()//' in the step')
+    if (model%now%procedure%name == '') then
+      if (.not. has_faulty_procedure(model)) call this%fault( &
+        faults, 'the step has no procedure', list_procedures()//' in the step')
     end if
     call check_base_motion(model, faults)
     call check_perturbation(model, faults)
