@@ -18,7 +18,6 @@ module reduced_basis
                            static_solvers
   use reduced_rest, only: find_rest, rest_compliance, rest_response, separate_shapes, static_rest
   use shape_modes, only: find_shape_modes
-  use shape_orthogonality, only: orthonormalise_all
   use step_system, only: dam_system
   use symmetric_modes, only: find_modes
   implicit none
@@ -82,9 +81,8 @@ contains
     type(massless_part) :: massless
     integer :: k
     basis%num_shapes = size(shapes, 2)
-    call find_massless(system, basis%force, solvers, shapes, massless, error)
+    call find_massless(system, basis%shift, basis%force, solvers, shapes, massless, error)
     if (allocated(error)) return
-    if (massless%is_there) call orthonormalise_all(system, basis%shift, shapes)
     call leave_out_static(system, basis%shift, highest/dt**2, shapes, frequency, error)
     if (allocated(error)) return
     basis%num_modes = size(shapes, 2)

@@ -12,6 +12,7 @@ module reduced_massless
   use linear_solver, only: equation_solver
   use reduced_ports, only: find_port_compliance, forces_of, sample_forces, solve_blocks, &
                            static_solvers
+  use shape_orthogonality, only: orthonormalise_all
   use step_system, only: dam_system
   implicit none
   private
@@ -26,26 +27,29 @@ module reduced_massless
 
   !> h over the mean squared frequency of the unknowns, sum of K_ii over sum of M_ii: what is held
   !> moves by 1e-6 of what it would. Larger values leave more round-off where jumps are unknowns.
-  real(rk), parameter :: hold_share = 1.0e6_rk
+  real(rk), parameter :: hold_share = 1.0e5_rk
   !> Share of what is held in the stiffness of the response above which no massless solid moves: it
   !> is 1e-6 where massless solids move, and 1 where none do.
   real(rk), parameter :: most_held = 0.5_rk
   integer, parameter :: num_samples = 8
+  !> Shapes follow twice: the first time, round-off of large shapes in the rock is left.
+  integer, parameter :: num_passes = 2
 
 contains
 
   !> Finds the response, and makes massless solids follow the others in the shapes: X describes
   !> what they do beyond. The solver `held` holds the factor afterwards; it is dropped where forces
   !> of the ports do not move massless solids.
-  subroutine find_massless(system, force, solvers, shapes, massless, error)
+  subroutine find_massless(system, shift, force, solvers, shapes, massless, error)
     type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: shift !< s of K + s M [1/s2]
     real(rk), intent(in) :: force(:, :) !< (num_total, loads) [N]
     type(static_solvers), intent(inout) :: solvers
-    real(rk), intent(inout) :: shapes(:, :) !< (num_free, shapes)
+    real(rk), allocatable, intent(inout) :: shapes(:, :) !< (num_free, shapes)
     type(massless_part), intent(out) :: massless
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: inertia(:, :)
     real(rk) :: hold
+    integer :: pass
     if (.not. allocated(solvers%held)) return
     hold = hold_share*mean_frequency(system)
     call solvers%held%factorise(system%matrix, system%stiffness + hold*system%mass, error)
@@ -59,11 +63,26 @@ contains
     call find_port_compliance(system, solvers%held, force, massless%load_shape, &
                               massless%compliance, error)
     if (allocated(error)) return
+    do pass = 1, num_passes
+      call let_follow(system, hold, solvers%held, shapes, error)
+      if (allocated(error)) return
+      call orthonormalise_all(system, shift, shapes)
+    end do
+  end subroutine find_massless
+
+  !> Makes massless solids follow the others: (K + h M)^-1 h M Psi.
+  subroutine let_follow(system, hold, held, shapes, error)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: hold !< h [1/s2]
+    class(equation_solver), intent(inout) :: held
+    real(rk), intent(inout) :: shapes(:, :) !< (num_free, shapes)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: inertia(:, :)
     allocate (inertia, mold=shapes)
     call multiply_columns(system%mass_pattern, system%mass_entries, shapes, inertia)
-    call solve_blocks(solvers%held, inertia, error)
+    call solve_blocks(held, inertia, error)
     if (.not. allocated(error)) shapes = hold*inertia
-  end subroutine find_massless
+  end subroutine let_follow
 
   !> Mean squared circular frequency of the unknowns, each alone [1/s2].
   real(rk) function mean_frequency(system) result(mean)

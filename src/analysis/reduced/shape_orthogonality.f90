@@ -12,13 +12,15 @@ module shape_orthogonality
   !> A shape whose part beyond the others is less than this of its own size is left out, and one
   !> that loses half of this part when it is made orthogonal again: the part is round-off.
   real(rk), parameter :: least_part = 1.0e-9_rk, least_rest = 0.5_rk
+  !> A shape of which massless solids have left less than this of its size is round-off: what the
+  !> factor of K + h M leaves of a shape in the massless solids alone.
+  real(rk), parameter :: least_left = 1.0e-6_rk
   integer, parameter :: block_size = 16 !< shapes at once, for products of matrices
 
 contains
 
-  !> Makes shapes orthogonal to each other with K + s M and their size one. Those without a part
-  !> beyond the others are taken out: where massless solids follow the others, shapes that differed
-  !> in these solids alone do not differ, and what is left of the difference is round-off.
+  !> Makes shapes orthogonal to each other with K + s M and their size one, which it was before
+  !> massless solids followed the others. Those of which little is left are taken out.
   subroutine orthonormalise_all(system, shift, shapes)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: shift !< s [1/s2]
@@ -29,7 +31,7 @@ contains
     num_kept = 0
     do first = 1, size(shapes, 2), block_size
       block = shapes(:, first:min(first + block_size - 1, size(shapes, 2)))
-      call orthonormalise(system, measure, shapes(:, :num_kept), block)
+      call separate_twice(system, measure, shapes(:, :num_kept), least_left, block)
       shapes(:, num_kept + 1:num_kept + size(block, 2)) = block
       num_kept = num_kept + size(block, 2)
     end do
@@ -45,22 +47,35 @@ contains
     real(rk), intent(in), contiguous :: others(:, :) !< (num_free, shapes)
     real(rk), allocatable, intent(inout) :: block(:, :) !< (num_free, shapes)
     real(rk), allocatable :: product(:, :) ! stiffness times the block
-    real(rk) :: length(size(block, 2))
-    integer :: pass, k
+    real(rk) :: length
+    integer :: k
     allocate (product, mold=block)
     call multiply_columns(system%matrix, measure, block, product)
-    do k = 1, size(length)
-      length(k) = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
-      if (.not. length(k) > 0.0_rk) cycle
-      block(:, k) = block(:, k)/length(k)
-      product(:, k) = product(:, k)/length(k)
+    do k = 1, size(block, 2)
+      length = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
+      if (length > 0.0_rk) block(:, k) = block(:, k)/length
     end do
+    call separate_twice(system, measure, others, least_part, block)
+  end subroutine orthonormalise
+
+  !> Makes the shapes of a block orthogonal to the others and to each other, twice against round-off,
+  !> and their size one. Those with a part of less than `least` beyond the others are taken out.
+  subroutine separate_twice(system, measure, others, least, block)
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: measure(:) !< values of the stiffness
+    real(rk), intent(in), contiguous :: others(:, :) !< (num_free, shapes)
+    real(rk), intent(in) :: least
+    real(rk), allocatable, intent(inout) :: block(:, :) !< (num_free, shapes)
+    real(rk), allocatable :: product(:, :) ! stiffness times the block
+    integer :: pass
+    allocate (product, mold=block)
     do pass = 1, 2
+      call multiply_columns(system%matrix, measure, block, product)
       call subtract_times(others, transposed_times(others, product), block)
       call multiply_columns(system%matrix, measure, block, product)
-      call separate(merge(least_part, least_rest, pass == 1), block, product)
+      call separate(merge(least, least_rest, pass == 1), block, product)
     end do
-  end subroutine orthonormalise
+  end subroutine separate_twice
 
   !> Makes the shapes of a block orthogonal to each other and their size one. Those that are not
   !> longer than `least` then are taken out.
