@@ -71,6 +71,8 @@ KINDS = {
     "warning_supports_of_modes": "supports-of-modes",
     "warning_op_new_of_one_keyword": "other-loads-stay",
     "warning_tie_of_one_held_node": "support-on-tie",
+    "warning_light_solid_in_motion": "light-solid",
+    "warning_massless_dampings_of_a_reduced_model": "massless-damping",
 }
 
 

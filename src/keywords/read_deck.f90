@@ -8,6 +8,7 @@ module read_deck
   use check_idle_steps, only: warn_of_idle_steps
   use check_inner_faces, only: warn_of_inner_faces
   use check_loads, only: warn_of_loads
+  use check_light_solids, only: warn_of_light_solids
   use check_magnitudes, only: warn_of_magnitudes
   use check_motions, only: warn_of_motions
   use check_growth, only: warn_of_growth
@@ -108,6 +109,7 @@ contains
     call warn_of_inner_faces(model, faults)
     call warn_of_units(model, faults)
     call warn_of_magnitudes(model, faults)
+    call warn_of_light_solids(model, faults)
     call warn_of_motions(model, faults)
     call warn_of_growth(model, faults)
     call warn_of_heat(model, faults)

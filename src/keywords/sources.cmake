@@ -63,6 +63,7 @@ set(sources
   loads/keywords_reservoir.f90
   loads/load_cards.f90
   loads/uplift_edges.f90
+  magnitudes/check_light_solids.f90
   magnitudes/check_magnitudes.f90
   magnitudes/check_motions.f90
   magnitudes/check_units.f90

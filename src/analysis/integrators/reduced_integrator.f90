@@ -216,7 +216,7 @@ contains
       end if
       now%reduction = reduction_status(wanted, self%basis%num_modes, &
                                        sqrt(maxval(self%basis%lambda))/two_pi, estimate)
-      call say_model(now%reduction, plan%reduced%accuracy, results)
+      call say_model(now%reduction, size(model%joints) > 0, plan%reduced%accuracy, results)
       if (plan%reduced%num_modes > 0 .or. estimate <= plan%reduced%accuracy) exit
       if (wanted >= most_modes .or. self%basis%num_shapes < wanted) exit
       wanted = min(most_modes, grown(wanted, estimate/plan%reduced%accuracy))
@@ -257,8 +257,9 @@ contains
   end subroutine build_basis_of
 
   !> Writes number of modes, highest frequency and estimate to the log.
-  subroutine say_model(reduction, accuracy, results)
+  subroutine say_model(reduction, has_joints, accuracy, results)
     type(reduction_status), intent(in) :: reduction
+    logical, intent(in) :: has_joints !< openings are measured, else displacements
     real(rk), intent(in) :: accuracy
     class(listener), intent(inout) :: results
     character(160) :: text, error
@@ -267,7 +268,8 @@ contains
     error = ''
     if (reduction%estimate >= 0.0_rk) then
       write (error, '(2(a,f0.2),a)') '  estimated error ', 100.0_rk*reduction%estimate, &
-        ' % of the largest opening  wanted ', 100.0_rk*accuracy, ' %'
+        ' % of the largest '//trim(merge('opening     ', 'displacement', has_joints))// &
+        '  wanted ', 100.0_rk*accuracy, ' %'
     end if
     call results%log%say(trim(text)//trim(error))
   end subroutine say_model

@@ -43,10 +43,8 @@ contains
     if (.not. has_massless(model)) call find_acceleration(system%matrix, system%mass, r, a, &
                                                           is_definite)
     if (is_definite) return
-    if (is_balanced(system%matrix%num_free, load, r)) then
-      a = 0.0_rk
-      return
-    end if
+    a = 0.0_rk
+    if (is_balanced(system%matrix%num_free, load, r)) return
     leaves_open = .true.
     do
       do trial = 1, most_trials

@@ -58,8 +58,8 @@ contains
     call separate_twice(system, measure, others, least_part, block)
   end subroutine orthonormalise
 
-  !> Makes the shapes of a block orthogonal to the others and to each other, twice against round-off,
-  !> and their size one. Those with a part of less than `least` beyond the others are taken out.
+  !> Makes the shapes of a block orthogonal to the others and to each other, twice against
+  !> round-off, and their size one. Those with a part of less than `least` beyond the others are taken out.
   subroutine separate_twice(system, measure, others, least, block)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: measure(:) !< values of the stiffness

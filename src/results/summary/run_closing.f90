@@ -161,9 +161,11 @@ contains
     type(problem), intent(in) :: model
     type(run_summary), intent(in) :: summary
     character(:), allocatable :: text
+    character(13) :: measured ! by the estimate of a reduced model
     integer :: i
     text = ''
     if (sum([0, summary%steps%increments]) == 0) return
+    measured = merge('openings     ', 'displacements', size(model%joints) > 0)
     associate (steps => summary%steps)
       text = nl//'error of the energy balance '// &
              as_short_text(maxval([0.0_rk, steps%largest_error]))//', residual '// &
@@ -175,7 +177,7 @@ contains
         text = text//nl//'reduced model of step '//model%steps(steps(i)%step)%name//': '// &
                as_text(steps(i)%reduction%num_modes)//' modes'
         if (steps(i)%reduction%estimate < 0.0_rk) cycle
-        text = text//', estimated error of openings '// &
+        text = text//', estimated error of '//trim(measured)//' '// &
                as_short_text(100.0_rk*steps(i)%reduction%estimate)//' % of the largest'
       end do
     end associate
