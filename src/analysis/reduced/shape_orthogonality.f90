@@ -59,7 +59,8 @@ contains
   end subroutine orthonormalise
 
   !> Makes the shapes of a block orthogonal to the others and to each other, twice against
-  !> round-off, and their size one. Those with a part of less than `least` beyond the others are taken out.
+  !> round-off, and their size one. Those with a part of less than `least` beyond the others are
+  !> taken out.
   subroutine separate_twice(system, measure, others, least, block)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: measure(:) !< values of the stiffness
