@@ -12,7 +12,7 @@ module read_deck
   use check_magnitudes, only: warn_of_magnitudes
   use check_motions, only: warn_of_motions
   use check_growth, only: warn_of_growth
-  use check_pressures, only: warn_of_other_keyword, warn_of_pressures
+  use check_pressures, only: warn_of_pressures
   use check_units, only: warn_of_units
   use check_mesh, only: warn_of_mesh
   use card_digests, only: digests_of_cards, list_input_files
@@ -105,7 +105,6 @@ contains
     call warn_of_unused(model, faults)
     call warn_of_loads(model, faults)
     call warn_of_pressures(model, faults)
-    call warn_of_other_keyword(model, faults)
     call warn_of_inner_faces(model, faults)
     call warn_of_units(model, faults)
     call warn_of_magnitudes(model, faults)

@@ -35,8 +35,9 @@ contains
     call list%add('other-loads-stay', &
                   'clears the loads of this keyword alone', &
                   'OP=NEW of *DLOAD clears the loads of *DLOAD, that of *DSLOAD those of '// &
-                  '*DSLOAD, as in Abaqus. CalculiX clears both.', &
-                  'Give OP=NEW with both keywords where all these loads end, and the weight '// &
+                  '*DSLOAD, as in Abaqus. CalculiX clears both. The message names pressures: a '// &
+                  'weight is usually meant to stay.', &
+                  'Give OP=NEW with both keywords where all pressures end, and the weight '// &
                   'again.', &
                   '*DLOAD, OP=NEW where a *DSLOAD of an earlier step must end too', &
                   '*DLOAD, OP=NEW and *DSLOAD, OP=NEW')

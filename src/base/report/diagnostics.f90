@@ -3,6 +3,8 @@
 !> One list collects all faults while the deck is read; diagnostic_text makes messages of them.
 module diagnostics
   use fault_kinds, only: kind_list, shows_reference
+  use text_table, only: text_numbers
+  use write_text, only: as_text
   implicit none
   private
   public :: place, diagnostic, diagnostic_list, is_shown
@@ -40,6 +42,7 @@ module diagnostics
     integer :: num_warnings = 0 !< warnings and ignored input
     type(diagnostic), allocatable :: errors(:) !< the first `num_kept` are in use
     type(diagnostic), allocatable :: warnings(:) !< the first `num_warnings` are in use
+    type(text_numbers) :: warned !< places and texts of the warnings, in the same order
     integer :: num_kept = 0
     type(kind_list) :: kinds !< of all errors
   contains
@@ -47,6 +50,7 @@ module diagnostics
     procedure :: has_errors
   end type diagnostic_list
 
+  character, parameter :: nl = new_line('a')
   integer, parameter :: most_kept = 20 !< errors that are shown (deck.md)
 
 contains
@@ -74,9 +78,21 @@ contains
       self%num_errors = self%num_errors + 1
       call keep_error(self, new)
     else
-      call append_diagnostic(self%warnings, self%num_warnings, new)
+      call keep_warning(self, new)
     end if
   end subroutine add_diagnostic
+
+  !> Keeps a warning, unless its place has one of the same text.
+  subroutine keep_warning(self, new)
+    class(diagnostic_list), intent(inout) :: self
+    type(diagnostic), intent(in) :: new
+    character(:), allocatable :: spot
+    integer :: number
+    spot = as_text(new%spot%line)//' '//as_text(new%spot%column)//' '
+    if (allocated(new%spot%file)) spot = spot//new%spot%file
+    call self%warned%find_or_add(spot//nl//new%problem//nl//new%expected, number)
+    if (number > self%num_warnings) call append_diagnostic(self%warnings, self%num_warnings, new)
+  end subroutine keep_warning
 
   !> Whether a line that is read several times has a remark at the place.
   pure logical function is_known(self, severity, spot)

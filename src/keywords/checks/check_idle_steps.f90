@@ -188,7 +188,7 @@ contains
     if (.not. this%has('DIRECT') .or. this%num_lines == 0) return
     do i = 3, 4
       if (this%is_empty_at(1, i)) cycle
-      call this%warn_at(faults, 1, i, 'the '//merge('smallest', 'largest ', i == 3)// &
+      call this%warn_at(faults, 1, i, 'the '//trim(merge('smallest', 'largest ', i == 3))// &
                         ' increment has no effect: with DIRECT increments have a fixed size')
       return
     end do

@@ -1,12 +1,13 @@
 !> Warns of a pressure, or of water, of an earlier step that goes on beside a new one of its kind on
 !> the same face under another name: a load is replaced under its own name alone. Warns of OP=NEW of
-!> *DLOAD or *DSLOAD that leaves loads of the other keyword acting.
+!> *DLOAD or *DSLOAD that leaves pressures of the other keyword acting.
 module check_pressures
   use applied_load, only: load
   use dam_mesh, only: surface
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
+  use growing_lists, only: append, make_room
   use kinds, only: rk
   use load_cards, only: list_load_cards, load_card_list
   use load_pressure, only: pressure_load
@@ -16,7 +17,7 @@ module check_pressures
   use write_text, only: as_text
   implicit none
   private
-  public :: card_of_load, find_faces, warn_of_other_keyword, warn_of_pressures
+  public :: card_of_load, find_faces, warn_of_pressures
 
   integer, parameter :: num_kinds = 3 !< of loads on faces
 
@@ -31,6 +32,13 @@ module check_pressures
     logical, allocatable :: has(:) !< (loads) the tables have the faces of this load
   end type pushed_faces
 
+  !> Loads of earlier steps that warnings have named, and the steps of these warnings.
+  type :: named_loads
+    integer :: num = 0
+    integer, allocatable :: load(:) !< `num` are in use
+    integer, allocatable :: step(:)
+  end type named_loads
+
 contains
 
   !> The deck must have no errors.
@@ -39,6 +47,7 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(load_card_list) :: cards
     type(pushed_faces) :: pushed
+    type(named_loads) :: named
     logical, allocatable :: is_old(:) !< (loads) acts in the step before
     integer :: s, i, old, element
     call list_load_cards(model%cards, cards)
@@ -53,30 +62,35 @@ contains
         do i = 1, size(now)
           if (is_old(now(i)%load)) cycle
           call find_shared(model, now(i)%load, pushed, old, element)
-          if (element > 0) call warn_of_both(model, cards, s, element, old, now(i)%load, faults)
+          if (element == 0) cycle
+          call warn_of_both(model, cards, s, element, old, now(i)%load, faults)
+          call note_named(named, old, s)
         end do
       end associate
     end do
+    call warn_of_other_keyword(model, cards, named, faults)
   end subroutine warn_of_pressures
 
   !> OP=NEW of *DLOAD clears the loads of *DLOAD alone, that of *DSLOAD those of *DSLOAD, as in
-  !> Abaqus. CalculiX clears both. Each load that goes on by this is named once.
-  subroutine warn_of_other_keyword(model, faults)
+  !> Abaqus. CalculiX clears both. Each pressure that goes on by this is named once. The weight is
+  !> not named: it is meant to stay where new water comes.
+  subroutine warn_of_other_keyword(model, cards, named, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards
+    type(named_loads), intent(in) :: named !< as acting beside new loads
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: other
     logical, allocatable :: stays(:)
-    type(load_card_list) :: cards
     logical :: is_named(size(model%problem%loads))
     integer :: step(size(model%cards)), i, first
     step = steps_of_cards(model%cards)
-    call list_load_cards(model%cards, cards)
     is_named = .false.
     do i = 1, size(step)
       if (step(i) < 2 .or. .not. is_pressed_anew(model%cards(i))) cycle
       other = 'DLOAD'
       if (is_keyword(model%cards(i), 'DLOAD')) other = 'DSLOAD'
       call find_standing(model, cards, step, step(i), other, stays)
+      call mark_named(named, step(i), is_named)
       stays = stays .and. .not. is_named
       if (.not. any(stays)) cycle
       is_named = is_named .or. stays
@@ -88,6 +102,26 @@ contains
         'where they must end')
     end do
   end subroutine warn_of_other_keyword
+
+  pure subroutine note_named(named, number, s)
+    type(named_loads), intent(inout) :: named
+    integer, intent(in) :: number !< of a load
+    integer, intent(in) :: s !< step
+    call make_room(named%step, named%num, 1)
+    named%step(named%num + 1) = s
+    call append(named%load, named%num, number)
+  end subroutine note_named
+
+  !> Marks the loads that warnings of a step have named.
+  pure subroutine mark_named(named, s, is_named)
+    type(named_loads), intent(in) :: named
+    integer, intent(in) :: s !< step
+    logical, intent(inout) :: is_named(:) !< (loads)
+    integer :: i
+    do i = 1, named%num
+      if (named%step(i) == s) is_named(named%load(i)) = .true.
+    end do
+  end subroutine mark_named
 
   !> Whether a card is *DLOAD or *DSLOAD with OP=NEW.
   pure logical function is_pressed_anew(this)
@@ -104,7 +138,7 @@ contains
     if (num > 0) text = ' and '//as_text(num)//' more'
   end function others_in_words
 
-  !> The loads of a keyword that act in a step, have acted before and are not given in the step.
+  !> The pressures of a keyword that act in a step, have acted before and are not given in the step.
   !> None where a card of this keyword has OP=NEW in the step.
   subroutine find_standing(model, cards, step, s, keyword, stays)
     type(draft), intent(in) :: model
@@ -126,11 +160,22 @@ contains
       do i = 1, size(now)
         if (model%problem%loads(now(i)%load)%item%family /= keyword) cycle
         if (is_ending(now(i)) .or. .not. is_old(now(i)%load)) cycle
+        if (.not. is_pressure(model%problem%loads(now(i)%load)%item)) cycle
         found = card_of_load(model, cards, s, model%problem%loads(now(i)%load)%item)
         stays(now(i)%load) = step(found) < s
       end do
     end associate
   end subroutine find_standing
+
+  !> Whether a load is a pressure, else a weight.
+  pure logical function is_pressure(item)
+    class(load), intent(in) :: item
+    is_pressure = .false.
+    select type (item)
+    type is (pressure_load)
+      is_pressure = .true.
+    end select
+  end function is_pressure
 
   !> Enters the loads of earlier steps that go on. While none of them ends, only those that have
   !> come are entered.

@@ -5,6 +5,7 @@ module check_steps
   use diagnostics, only: diagnostic_list
   use guest_list, only: supports_of_step
   use load_base_motion, only: base_motion
+  use keywords_boundary, only: sets_support
   use keywords_output, only: fields_of_envelope
   use model_draft, only: draft, kept_support
   use step_plan, only: field_name_length
@@ -80,7 +81,7 @@ contains
     type(draft), intent(in) :: model
     integer, intent(in) :: step(:) !< of each card
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: number
+    character(:), allocatable :: number, state
     integer :: i, k
     do k = 1, size(model%kept_supports)
       associate (kept => model%kept_supports(k))
@@ -88,10 +89,12 @@ contains
         i = card_of_kept(model, step, kept)
         if (i == 0) cycle
         number = as_text(kept%step)
+        state = 'is held'
+        if (.not. kept%is_held) state = 'is not held'
+        if (kept%is_moved) state = 'has another displacement'
         call model%cards(i)%warn( &
           faults, 'the supports of this *FREQUENCY step stay: node '// &
-          as_text(model%problem%mesh%node_id(kept%node))//' is '// &
-          trim(merge('held    ', 'not held', kept%is_held))//' in direction '// &
+          as_text(model%problem%mesh%node_id(kept%node))//' '//state//' in direction '// &
           as_text(kept%dof)//' in step '//number//' (in Abaqus they end with the *FREQUENCY '// &
           'step)', '*BOUNDARY, OP=NEW with all supports in step '//number//', unless they '// &
           'are meant to stay')
@@ -112,8 +115,9 @@ contains
     end do
   end function gives_all_supports
 
-  !> The last *BOUNDARY of the *FREQUENCY steps before a step that keeps a support; 0 for none.
-  pure integer function card_of_kept(model, step, kept) result(found)
+  !> The last *BOUNDARY of the *FREQUENCY steps before a step that has set or removed a support
+  !> that the step keeps; 0 for none.
+  integer function card_of_kept(model, step, kept) result(found)
     type(draft), intent(in) :: model
     integer, intent(in) :: step(:) !< of each card
     type(kept_support), intent(in) :: kept
@@ -121,7 +125,12 @@ contains
     do s = kept%step - 1, 1, -1
       if (.not. model%problem%steps(s)%procedure%finds_modes) exit
       do found = size(step), 1, -1
-        if (step(found) == s .and. is_keyword(model%cards(found), 'BOUNDARY')) return
+        if (step(found) /= s .or. .not. is_keyword(model%cards(found), 'BOUNDARY')) cycle
+        if (kept%is_held) then
+          if (sets_support(model%cards(found), model, kept%node, kept%dof)) return
+        else if (model%cards(found)%word('OP') == 'NEW') then
+          return
+        end if
       end do
     end do
     found = 0

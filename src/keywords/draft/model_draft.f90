@@ -99,6 +99,7 @@ module model_draft
     integer :: node = 0 !< position
     integer :: dof = 0 !< 1..3
     logical :: is_held = .true. !< else the *FREQUENCY step removed the support
+    logical :: is_moved = .false. !< held before too, with another displacement
   end type kept_support
 
   !> *BOUNDARY, TYPE=ACCELERATION in one direction.
@@ -155,7 +156,7 @@ module model_draft
     integer :: num_loads = 0 !< in use of model%loads, which grows by doubling
     type(load_book) :: active_loads
     type(dof_table) :: supports, point_forces
-    logical, allocatable :: last_held(:, :) !< (3, nodes) after the last step that moves the model
+    type(dof_table) :: last_supports !< after the last step that moves the model
     type(kept_support), allocatable :: kept_supports(:) !< one for each step that keeps some
     ! The card being read.
     integer :: current = 0 !< its position in `cards`

@@ -41,7 +41,7 @@ contains
     model%step_origin = model%here(0)
     model%is_in_step = .true.
     model%supports%is_new = .false.
-    if (num == 0) model%last_held = model%supports%is_set
+    if (num == 0) model%last_supports = model%supports
     model%has_new_nodal = .false.
     model%has_new_elemental = .false.
     model%rhythm = output_rhythm()
@@ -66,6 +66,7 @@ contains
       call model%supports%end_step(histories, duration, end_time, is_perturbation)
       call model%point_forces%end_step(histories, duration, end_time, is_perturbation)
     end associate
+    if (.not. is_perturbation) model%last_supports = model%supports
     model%total_time = end_time
     model%num_steps = model%num_steps + 1
     model%problem%steps(model%num_steps) = model%now
@@ -116,15 +117,16 @@ contains
   subroutine note_kept_supports(model)
     type(draft), intent(inout) :: model
     integer :: found(2)
+    logical :: is_held, was_held
     if (model%now%procedure%finds_modes) return
     associate (table => model%supports)
-      found = findloc((table%is_set .neqv. model%last_held) .and. .not. table%is_new, .true.)
-      if (found(1) > 0) then
-        model%kept_supports = [model%kept_supports, &
-                               kept_support(model%num_steps + 1, found(2), found(1), &
-                                            table%is_set(found(1), found(2)))]
-      end if
-      model%last_held = table%is_set
+      found = findloc(table%differs(model%last_supports) .and. .not. table%is_new, .true.)
+      if (found(1) == 0) return
+      is_held = table%is_set(found(1), found(2))
+      was_held = model%last_supports%is_set(found(1), found(2))
+      model%kept_supports = [model%kept_supports, &
+                             kept_support(model%num_steps + 1, found(2), found(1), is_held, &
+                                          is_held .and. was_held)]
     end associate
   end subroutine note_kept_supports
 

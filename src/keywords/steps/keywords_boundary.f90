@@ -14,7 +14,7 @@ module keywords_boundary
   use write_text, only: as_text
   implicit none
   private
-  public :: describe_boundary, read_boundary
+  public :: describe_boundary, read_boundary, sets_support
 
   character, parameter :: nl = new_line('a')
   character(*), parameter :: types = 'DISPLACEMENT | ACCELERATION'
@@ -87,6 +87,23 @@ contains
       end do
     end do
   end subroutine read_boundary
+
+  !> Whether a card without faults supports a node in a direction.
+  logical function sets_support(this, model, node, dof) result(is_set)
+    type(card), intent(in) :: this
+    type(draft), intent(in) :: model
+    integer, intent(in) :: node !< position
+    integer, intent(in) :: dof !< 1..3
+    type(diagnostic_list) :: faults
+    integer, allocatable :: nodes(:), dofs(:)
+    integer :: line
+    is_set = .false.
+    do line = 1, this%num_lines
+      call nodes_at(this, line, 1, model, faults, nodes)
+      call read_dofs(this, line, faults, dofs)
+      is_set = is_set .or. (any(nodes == node) .and. any(dofs == dof))
+    end do
+  end function sets_support
 
   !> What is prescribed.
   subroutine check_type(this, model, faults)

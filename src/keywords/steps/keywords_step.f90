@@ -162,7 +162,7 @@ contains
               field('STABILIZE', kind_text, 'refused', may_be_bare=.true.)])
     allocate (spec%columns, source=[ &
               field('first increment', kind_real, 'size of the first increment', 's', &
-                    'the duration, at most the largest'), &
+                    'the duration, without DIRECT at most the largest'), &
               field('duration', kind_real, 'duration of the step', 's', '1'), &
               field('smallest', kind_real, 'smallest increment', 's', &
                     '1e-5 of the duration, at most 1e-3 of the first increment'), &
@@ -189,7 +189,7 @@ contains
     model%now%duration = 1.0_rk
     if (is_given(this, 2)) model%now%duration = this%real_at(1, 2)
     model%now%first_increment = model%now%duration
-    if (is_given(this, 4)) then
+    if (is_given(this, 4) .and. .not. model%now%is_direct) then
       model%now%first_increment = min(model%now%duration, this%real_at(1, 4))
     end if
     if (is_given(this, 1)) model%now%first_increment = this%real_at(1, 1)
@@ -357,15 +357,17 @@ contains
     if (this%num_lines > 0) is_given = this%real_at(1, field) > 0.0_rk
   end function is_given
 
-  !> Smallest and largest increment, and whether all sizes agree.
+  !> Smallest and largest increment, which DIRECT does without, and whether all sizes agree.
   subroutine read_limits(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     associate (now => model%now)
       now%smallest_increment = now%default_smallest()
-      if (is_given(this, 3)) now%smallest_increment = this%real_at(1, 3)
-      if (is_given(this, 4)) now%largest_increment = this%real_at(1, 4)
+      if (.not. now%is_direct) then
+        if (is_given(this, 3)) now%smallest_increment = this%real_at(1, 3)
+        if (is_given(this, 4)) now%largest_increment = this%real_at(1, 4)
+      end if
       if (now%first_increment > now%duration) then
         call this%fault_at(faults, 1, 1, 'the increment is longer than the step', &
                            'at most the duration, '//as_text(now%duration)//' s')

@@ -21,6 +21,7 @@ module dof_tables
     procedure :: add => add_value
     procedure :: clear_old
     procedure :: follows
+    procedure :: differs
     procedure :: end_step
   end type dof_table
 
@@ -95,6 +96,16 @@ contains
       end do
     end do
   end function follows
+
+  !> Where a degree of freedom is set in one of two tables alone, or to another value. The history
+  !> of a value of zero is no matter.
+  pure function differs(self, other)
+    class(dof_table), intent(in) :: self
+    type(dof_table), intent(in) :: other !< of the same nodes
+    logical :: differs(size(self%is_set, 1), size(self%is_set, 2))
+    differs = (self%is_set .neqv. other%is_set) .or. abs(self%value - other%value) > 0.0_rk &
+              .or. (self%history /= other%history .and. abs(self%value) > 0.0_rk)
+  end function differs
 
   !> Ends a step: values that followed an amplitude over step time stay constant from now on.
   pure subroutine end_step(self, histories, step_time, total_time, is_perturbation)
