@@ -13,8 +13,8 @@ module card_check
   use write_text, only: as_text
   implicit none
   private
-  public :: check_card, check_given_parameters, check_lines, found_no_integer, is_too_large, &
-            longest_name
+  public :: check_card, check_given_parameters, check_lines, found_no_integer, is_refused, &
+            is_too_large, longest_name
 
   integer, parameter :: most_letters = 80 !< of a name, as in Abaqus
   integer, parameter :: longest_name = 2*most_letters !< bytes: names of files have at most 255
@@ -320,12 +320,17 @@ contains
     if (wanted%kind == kind_integer .and. .not. is_right) problem = found_no_integer(word)
   end subroutine check_word
 
-  !> 'found 'WORD'', of a whole number that is too large with the largest.
+  !> 'found 'WORD'', of a whole number that no integer holds with the last one.
   pure function found_no_integer(word) result(problem)
     character(*), intent(in) :: word
     character(:), allocatable :: problem
     problem = "found '"//word//"'"
-    if (is_too_large(word)) problem = problem//', beyond the largest integer, '//as_text(huge(1))
+    if (.not. is_too_large(word)) return
+    if (word(1:1) == '-') then
+      problem = problem//', below the smallest integer, '//as_text(-huge(1))
+    else
+      problem = problem//', beyond the largest integer, '//as_text(huge(1))
+    end if
   end function found_no_integer
 
   !> Whether a word is a whole number that no integer holds.

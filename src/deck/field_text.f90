@@ -8,19 +8,17 @@ module field_text
   private
   public :: expected_in, kind_in_words, names_of_columns, text_or_nothing, with_commas
 
-  integer, parameter :: longest_meaning = 80 !< letters; longer meanings are left out before choices
-
 contains
 
-  !> "Young's modulus, a number > 0 [Pa]". A long meaning of a choice is left out, since the choices
-  !> are the expected values.
+  !> "Young's modulus, a number > 0 [Pa]"; 'one of NODES, GAUSS': the choices are the expected
+  !> values, without the meaning.
   pure function expected_in(described) result(text)
     type(field), intent(in) :: described
     character(:), allocatable :: text
     text = text_or_nothing(described%meaning)
     if (index(text, ';') > 0) text = text(:index(text, ';') - 1)
     if (index(text, 'of Abaqus') == 1 .or. index(text, 'of CalculiX') == 1) text = ''
-    if (described%kind == kind_choice .and. len(text) > longest_meaning) text = ''
+    if (described%kind == kind_choice) text = ''
     if (len(text) > 0) text = text//', '
     text = text//kind_in_words(described)
     if (len(text_or_nothing(described%unit)) > 0) text = text//' ['//described%unit//']'

@@ -1,5 +1,6 @@
 !> The keyword reference, made from the specifications with which decks are checked.
 module keyword_help
+  use card_check, only: is_refused
   use field_text, only: kind_in_words, text_or_nothing
   use keyword_spec, only: field, find_spec, keyword, kind_flag, later, refused, without_effect
   use nearest_words, only: nearest_word
@@ -127,7 +128,7 @@ contains
     type(field), intent(in) :: described
     character(:), allocatable :: text
     text = text_or_nothing(described%meaning)
-    if (described%has_no_effect) return
+    if (described%has_no_effect .or. is_refused(described)) return
     if (described%kind == kind_flag) then
       text = text//' (flag)'
     else

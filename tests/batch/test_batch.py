@@ -107,8 +107,13 @@ UMAT = {
     "law.for": "      SUBROUTINE UMAT\n      include 'law.inc'\n      END\n",
     "law.inc": '#include "deep/more.h"\n',
     "deep/more.h": "      INCLUDE 'far.inc'\n",
-    "far/far.inc": "      X = 1.0\n",
+    "far/far.inc": "      X = 1.0\n#include <angle.inc>\n      include 'a.inc'\n",
+    "far/angle.inc": "      include 'b.inc'\n      include 'c.inc'\n",
+    "one dir/a.inc": "      X = 2.0\n",
+    "two dir/b.inc": "      X = 3.0\n",
+    "last dir/c.inc": "      X = 4.0\n",
 }
+UMAT_FLAGS = "-O1 -Ifar -I\"one dir\" -I 'two dir' -Ilast\\ dir"
 
 
 @pytest.mark.parametrize("name", UMAT)
@@ -118,7 +123,7 @@ def test_a_deck_runs_again_where_its_umat_has_changed(place, name):
         (place / file).parent.mkdir(exist_ok=True)
         (place / file).write_text(text)
     dam = deck(place, "dam", "ok 1")
-    options = ["--umat", "law.for", "--umat-flags", "-O1 -Ifar", "--umat-library", "law.so"]
+    options = ["--umat", "law.for", "--umat-flags", UMAT_FLAGS, "--umat-library", "law.so"]
 
     def num_calls() -> int:
         assert batch.main([dam, "--program", "keyway", "--", *options]) == 0
@@ -130,6 +135,15 @@ def test_a_deck_runs_again_where_its_umat_has_changed(place, name):
     (place / name).write_text(UMAT[name] + "! changed\n")
     assert num_calls() == 2
     assert num_calls() == 2
+
+
+@pytest.mark.parametrize("flags", ["-O2 " * 100, "-D" + 400 * "N", "-I'" + 400 * "n"])
+def test_flags_longer_than_a_name_of_a_file(place, flags):
+    """Nor is a folder of such a name, or a quote that nothing closes, an end of all runs."""
+    (place / "law.for").write_text("      include 'law.inc'\n")
+    options = ["--umat-flags", flags, "--umat", "law.for", "n" * 400]
+    assert batch.main([deck(place, "dam", "ok 1"), "--program", "keyway", "--", *options]) == 0
+    assert len(calls(place)) == 1
 
 
 def test_failed_deck_is_run_again(place):

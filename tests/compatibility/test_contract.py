@@ -193,7 +193,7 @@ REFUSED = [
         "explicit",
         "block",
         {"*STATIC": "*DYNAMIC, EXPLICIT\n0.1, 1."},
-        "*DYNAMIC: time integration is implicit",
+        "*DYNAMIC: EXPLICIT is not available",
     ),
     ("riks", "block", {"*STATIC": "*STATIC, RIKS"}, "*STATIC: "),
     ("stabilize", "block", {"*STATIC": "*STATIC, STABILIZE"}, "*STATIC: "),

@@ -167,5 +167,5 @@ def test_restart_of_another_run_is_refused(tmp_path, keyway):
     path = deck_with(tmp_path, "")
     path.write_text("*RESTART, READ, STEP=2\n" + path.read_text())
     run = keyway(path, code=2)
-    assert "*RESTART: READ: a run goes on from its own checkpoint; expected" in run.stderr
+    assert "*RESTART: READ is not available; expected the same deck without this card" in run.stderr
     assert "--continue" in run.stderr

@@ -175,7 +175,11 @@ def test_later_steps_may_change_in_any_spelling(umat, program_path, tmp_path):
         ("GRAV, 9.81", "GRAV, 9.8", "*DLOAD is new or not as it was"),
         ("*BASE MOTION, DOF=1", "*BASE MOTION, DOF=2", "*BASE MOTION is new or not as it was"),
         ("*NSET, NSET=TOP", "*NSET, NSET=CREST\n5\n*NSET, NSET=TOP", ""),
-        ("*EL PRINT, ELSET=FOOT, FREQUENCY=2\nS, DAMAGET\n", "", "*JOINT PRINT is new or not"),
+        (
+            "*EL PRINT, ELSET=FOOT, FREQUENCY=2\nS, DAMAGET\n",
+            "",
+            "*EL PRINT FOOT of the checkpoint is missing",
+        ),
     ],
 )
 def test_changed_deck_is_refused(stopped, tmp_path_factory, old, new, says):

@@ -76,10 +76,8 @@ contains
                   'SCALE=9.81', &
                   'UNIT=G')
     call list%add('not-available', &
-                  'not available|is not supported|are not supported|tied surfaces are no '// &
-                  'contact|integration is implicit|has no viscous forces|follows its loads|'// &
-                  'no such numerical damping|no implicit Euler|of this step grow by|does not '// &
-                  'depend on the rate', &
+                  'not available|is not supported|are not supported|'// &
+                  'no such numerical damping|no implicit Euler|of this step grow by', &
                   'Keyway knows the keyword or the choice and does not have it. Input that is '// &
                   'not understood is never passed over.', &
                   'Take what the message offers in its place, or leave the card out. '// &

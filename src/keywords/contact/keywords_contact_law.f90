@@ -3,7 +3,7 @@ module keywords_contact_law
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: field, keyword, kind_flag, kind_real, kind_choice, kind_word
-  use keywords_other, only: add_idle_parameters
+  use keywords_other, only: add_idle_parameters, add_refused_parameter
   use kinds, only: rk
   use model_draft, only: draft, interaction_request
   implicit none
@@ -71,8 +71,10 @@ contains
     allocate (spec%parameters, source=[ &
               field('PRESSURE-OVERCLOSURE', kind_choice, 'for a table LINEAR with its '// &
                     'slope at the pressures of the model', default='HARD', &
-                    choices='HARD | LINEAR | TIED', rules_lines=.true.), &
-              field('NO SEPARATION', kind_flag, 'refused: see TIED')])
+                    choices='HARD | LINEAR | TIED', rules_lines=.true., &
+                    instead='for a table, LINEAR with its slope at the pressures of the model')])
+    call add_refused_parameter(spec, 'NO SEPARATION', 'PRESSURE-OVERCLOSURE=TIED, or *JOINT '// &
+                               'with the TENSILE STRENGTH of its *JOINT LAW')
     allocate (spec%columns, source=[ &
               field('stiffness', kind_real, 'normal stiffness', 'Pa/m', lowest=0.0_rk, &
                     excludes_lowest=.true.), &
@@ -88,11 +90,6 @@ contains
     integer :: number, i
     call find_open(this, model, faults, number)
     if (number == 0) return
-    if (this%has('NO SEPARATION')) then
-      call this%fault_parameter(faults, 'NO SEPARATION', 'contact without separation is not '// &
-                                'available', 'PRESSURE-OVERCLOSURE=TIED, or *JOINT with the '// &
-                                'TENSILE STRENGTH of its *JOINT LAW')
-    end if
     associate (law => model%interactions(number))
       if (law%behavior_card > 0) call this%fault( &
         faults, 'the surface interaction already has a *SURFACE BEHAVIOR', &

@@ -4,7 +4,7 @@ module keywords_contact_pair
   use diagnostics, only: diagnostic_list
   use joint_contraction, only: contraction_law
   use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_real, kind_text, kind_word
-  use keywords_other, only: add_idle_parameters
+  use keywords_other, only: add_idle_parameters, add_refused_parameter
   use kinds, only: rk
   use model_draft, only: add_law, draft, interaction_request, joint_request, law_request
   use named_things, only: find_surface_at, longest_name, nodes_of_set
@@ -54,8 +54,8 @@ contains
               field('SMALL SLIDING', kind_flag, 'the assumption of joints; a warning '// &
                     'without it'), &
               field('ADJUST', kind_text, 'gaps up to this number and all overlaps are zero '// &
-                    'at the start [m]; or a node set, whose gaps and overlaps are zero'), &
-              field('TIED', kind_flag, 'refused: see *TIE')])
+                    'at the start [m]; or a node set, whose gaps and overlaps are zero')])
+    call add_refused_parameter(spec, 'TIED', '*TIE of the two surfaces')
     allocate (spec%columns, source=[ &
               field('slave', kind_word, 'slave surface, as a rule the finer one', &
                     is_required=.true.), &
@@ -73,10 +73,6 @@ contains
     integer :: line, interaction
     if (model%num_steps > 0) then
       call this%fault(faults, 'a pair acts in all steps', 'a place above the first *STEP')
-    end if
-    if (this%has('TIED')) then
-      call this%fault_parameter(faults, 'TIED', 'tied surfaces are no contact', &
-                                '*TIE of the two surfaces')
     end if
     call find_interaction(this, model, faults, interaction)
     call read_adjust(this, model, faults, new)

@@ -2,7 +2,8 @@
 module keywords_equation
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use keyword_spec, only: field, keyword, kind_flag, kind_text
+  use keyword_spec, only: field, keyword, kind_text
+  use keywords_other, only: add_refused_parameter
   use kinds, only: rk
   use model_draft, only: draft
   use named_things, only: nodes_in_order_at
@@ -13,6 +14,8 @@ module keywords_equation
   public :: describe_equation, describe_mpc, read_equation, read_mpc
 
   character, parameter :: nl = new_line('a')
+  character(*), parameter :: without_remove = '*EQUATION without REMOVE: equations stay '// &
+                             'in all steps'
 
   !> A term of an equation: for all nodes of a set, in the order of their ids.
   type :: term
@@ -41,8 +44,8 @@ contains
     spec%example = '*EQUATION'//nl//'3'//nl//'12, 1, 1., 47, 1, -0.5, 53, 1, -0.5'
     spec%checks_own_data = .true.
     spec%repeats_columns = .true.
-    allocate (spec%parameters, source=[field('REMOVE', kind_flag, 'refused'), &
-                                       field('REMOVE ALL', kind_flag, 'refused')])
+    call add_refused_parameter(spec, 'REMOVE', without_remove)
+    call add_refused_parameter(spec, 'REMOVE ALL', without_remove)
     allocate (spec%columns, source=[ &
               field('node', kind_text, 'a node or a node set'), &
               field('direction', kind_text, '1 to 3'), &
@@ -55,10 +58,8 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(term), allocatable :: terms(:)
     integer :: line, start, num_terms, num_before
-    if (this%has('REMOVE') .or. this%has('REMOVE ALL')) then
-      call this%fault(faults, 'REMOVE: equations stay in all steps', '*EQUATION without REMOVE')
-      return
-    else if (this%num_lines < 2) then
+    if (this%has('REMOVE') .or. this%has('REMOVE ALL')) return ! reported
+    if (this%num_lines < 2) then
       call this%fault(faults, 'found no whole equation', &
                       'at least 2 data lines: the number of terms, then the terms')
       return

@@ -126,7 +126,9 @@ contains
   pure function in_place_of(word) result(text)
     character(*), intent(in) :: word !< upper case
     character(:), allocatable :: text
-    character(*), parameter :: force = 'GRAV with the force per volume over the density as g'
+    character(*), parameter :: force = 'a *DENSITY, and GRAV with the force '// &
+                               'per volume over the density as g'
+    character(*), parameter :: others = 'GRAV, P1..P6 or HP1..HP6'
     select case (word)
     case ('BX')
       text = force//', along 1., 0., 0.'
@@ -136,8 +138,12 @@ contains
       text = force//', along 0., 0., 1.'
     case ('BXNU', 'BYNU', 'BZNU')
       text = force//', and AMPLITUDE for its history'
-    case ('CENTRIF', 'ROTA', 'CORIO')
-      text = 'GRAV, P1..P6 or HP1..HP6: nothing rotates'
+    case ('CENTRIF', 'CENT')
+      text = others//'; a centrifugal load is not available'
+    case ('ROTA')
+      text = others//'; a load by angular acceleration is not available'
+    case ('CORIO')
+      text = others//'; a Coriolis load is not available'
     case default
       text = ''
     end select

@@ -3,8 +3,9 @@ module keywords_plastic
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_handler, only: keyword_list, pass_definitions
-  use keyword_spec, only: field, keyword, kind_choice, kind_real, kind_text
+  use keyword_spec, only: field, keyword, kind_choice, kind_real
   use keywords_material, only: claim_card
+  use keywords_other, only: add_refused_parameter
   use kinds, only: rk
   use material_metal, only: make_metal_law
   use model_draft, only: draft, find_material_request, has_request, material_request, origin
@@ -48,8 +49,9 @@ contains
     spec%no_further = 'the table does not depend on temperature'
     allocate (spec%parameters, source=[ &
               field('HARDENING', kind_choice, 'how the yield surface grows', &
-                    default='ISOTROPIC', choices='ISOTROPIC'), &
-              field('RATE', kind_text, 'refused', may_be_bare=.true.)])
+                    default='ISOTROPIC', choices='ISOTROPIC')])
+    call add_refused_parameter(spec, 'RATE', 'one *PLASTIC without RATE: the yield stress does '// &
+                               'not depend on the rate')
     allocate (spec%columns, source=[ &
               field('yield stress', kind_real, 'in uniaxial tension', 'Pa', is_required=.true., &
                     lowest=0.0_rk, excludes_lowest=.true.), &
@@ -67,11 +69,6 @@ contains
     type is (metal_request)
       call claim_card(this, model, now%spot, faults)
       call read_curve(this, faults, now%curve, now%is_right)
-      if (this%has('RATE')) then
-        call this%fault_parameter(faults, 'RATE', 'the yield stress does not depend on the rate', &
-                                  'one *PLASTIC without RATE')
-        now%is_right = .false.
-      end if
     end select
   end subroutine read_plastic
 

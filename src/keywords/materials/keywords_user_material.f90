@@ -43,7 +43,8 @@ contains
               field('UNSYMM', kind_flag, 'DDSDDE is used as the UMAT returns it; without '// &
                     'UNSYMM it is symmetrised'), &
               field('TYPE', kind_choice, 'kind of law, without coupling to temperature', &
-                    default='MECHANICAL', choices='MECHANICAL')])
+                    default='MECHANICAL', choices='MECHANICAL', &
+                    instead='the law has no coupling to temperature')])
     spec%repeats_columns = .true.
     allocate (spec%columns, source=[ &
               field('constant', kind_real, 'constant of the law (PROPS)', default='0')])

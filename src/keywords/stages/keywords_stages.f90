@@ -41,7 +41,8 @@ contains
               field('TYPE', kind_choice, 'what changes', default='ELEMENT', choices='ELEMENT'), &
               field('REMOVE', kind_flag, 'takes the elements out'), &
               field('ADD', kind_choice, 'puts the elements in, without stress', &
-                    choices='STRAIN FREE | STRAINFREE', may_be_bare=.true.)])
+                    choices='STRAIN FREE | STRAINFREE', may_be_bare=.true., &
+                    instead='elements that are added have no stress')])
     allocate (spec%columns, source=[ &
               field('elements', kind_reference, 'an element or a set', is_required=.true.)])
   end subroutine describe_model_change

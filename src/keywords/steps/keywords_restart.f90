@@ -3,7 +3,7 @@ module keywords_restart
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use keyword_spec, only: field, keyword, kind_flag, kind_integer
-  use keywords_other, only: add_idle_parameters
+  use keywords_other, only: add_idle_parameters, add_refused_parameter
   use kinds, only: rk
   use model_draft, only: draft
   implicit none
@@ -25,10 +25,11 @@ contains
     allocate (spec%parameters, source=[ &
               field('WRITE', kind_flag, 'writes checkpoints'), &
               field('FREQUENCY', kind_integer, 'every so many increments; 0: none', default='1', &
-                    lowest=0.0_rk), &
-              field('READ', kind_flag, 'refused')])
+                    lowest=0.0_rk)])
     allocate (spec%columns(0))
     call add_idle_parameters(spec, ['OVERLAY        ', 'NUMBER INTERVAL', 'TIME MARKS     '])
+    call add_refused_parameter(spec, 'READ', 'the same deck without this card, and the option '// &
+                               '--continue: a run goes on from its own checkpoint')
     spec%asks_for_output = .true.
   end subroutine describe_restart
 
@@ -36,11 +37,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (this%has('READ')) then
-      call this%fault(faults, 'READ: a run goes on from its own checkpoint', &
-                      'the same deck without this card, and the option --continue')
-      return
-    else if (.not. this%has('WRITE')) then
+    if (.not. this%has('WRITE')) then
       call this%ignore(faults, 'has no effect: there is no WRITE')
       return
     else if (.not. model%is_in_step) then

@@ -7,8 +7,8 @@ module keywords_step
   use finish_step, only: close_step, open_step
   use integrator_catalogue, only: list_procedures, list_schemes, procedure_named
   use keyword_spec, only: keyword, field, kind_choice, kind_flag, kind_integer, kind_real, &
-                          kind_text, kind_word
-  use keywords_other, only: add_idle_parameters
+                          kind_word
+  use keywords_other, only: add_idle_parameters, add_refused_parameter
   use kinds, only: rk
   use moved_supports, only: close_accelerations
   use model_draft, only: draft
@@ -40,7 +40,8 @@ contains
               field('NAME', kind_word, 'name of the step', default='STEP-<number>'), &
               field('INC', kind_integer, 'largest number of increments', default='100000'), &
               field('NLGEOM', kind_choice, 'geometric nonlinearity: strains and rotations are '// &
-                    'small; YES needs --small-strain', choices='NO | YES', may_be_bare=.true.), &
+                    'small; YES needs --small-strain', choices='NO | YES', may_be_bare=.true., &
+                    instead='strains and rotations are small'), &
               field('PERTURBATION', kind_flag, 'of Abaqus: a step *FREQUENCY')])
     spec%parameters(2)%lowest = 1
     call add_words_of_step(spec)
@@ -157,9 +158,12 @@ contains
     spec%example = '*STATIC'//nl//'0.1, 1.'
     spec%most_lines = 1
     allocate (spec%parameters, source=[ &
-              field('DIRECT', kind_flag, 'increments of fixed size'), &
-              field('RIKS', kind_flag, 'refused'), &
-              field('STABILIZE', kind_text, 'refused', may_be_bare=.true.)])
+              field('DIRECT', kind_flag, 'increments of fixed size')])
+    call add_refused_parameter(spec, 'RIKS', 'displacements in place of loads (*BOUNDARY, '// &
+                               'AMPLITUDE): the step follows its loads, not a path beyond '// &
+                               'their peak')
+    call add_refused_parameter(spec, 'STABILIZE', '*STATIC without STABILIZE, or a *DYNAMIC '// &
+                               'step with damping: a static step has no viscous forces')
     allocate (spec%columns, source=[ &
               field('first increment', kind_real, 'size of the first increment', 's', &
                     'the duration, without DIRECT at most the largest'), &
@@ -182,10 +186,6 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     call begin_procedure(this, 'STATIC', model, faults)
-    call refuse(this, 'RIKS', 'the step follows its loads, not a path beyond their peak', &
-                'displacements in place of loads (*BOUNDARY, AMPLITUDE)', faults)
-    call refuse(this, 'STABILIZE', 'a static step has no viscous forces', &
-                '*STATIC without STABILIZE, or a *DYNAMIC step with damping', faults)
     model%now%duration = 1.0_rk
     if (is_given(this, 2)) model%now%duration = this%real_at(1, 2)
     model%now%first_increment = model%now%duration
@@ -226,8 +226,9 @@ contains
                     'that the modes may leave, over the largest opening', default='0.02', &
                     lowest=0.0_rk, highest=0.5_rk, excludes_lowest=.true.), &
               field('MODES', kind_integer, 'with REDUCED: number of modes, in place of as many '// &
-                    'as ACCURACY needs', lowest=1.0_rk), &
-              field('EXPLICIT', kind_flag, 'refused')])
+                    'as ACCURACY needs', lowest=1.0_rk)])
+    call add_refused_parameter(spec, 'EXPLICIT', '*DYNAMIC without EXPLICIT, with an increment '// &
+                               'of a tenth of the shortest period of interest')
     allocate (spec%columns, source=[ &
               field('increment', kind_real, 'size of an increment', 's', is_required=.true.), &
               field('duration', kind_real, 'duration of the step', 's', is_required=.true.), &
@@ -243,8 +244,6 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     call begin_procedure(this, 'DYNAMIC', model, faults)
-    call refuse(this, 'EXPLICIT', 'time integration is implicit', '*DYNAMIC without EXPLICIT, '// &
-                'with an increment of a tenth of the shortest period of interest', faults)
     call check_application(this, faults)
     call choose_scheme(this, model, faults)
     model%now%alpha = this%real('ALPHA')
@@ -254,15 +253,6 @@ contains
     model%now%largest_increment = model%now%first_increment
     call read_limits(this, model, faults)
   end subroutine read_dynamic
-
-  !> Reports a parameter of other programs.
-  subroutine refuse(this, name, why, way_out, faults)
-    type(card), intent(in) :: this
-    character(*), intent(in) :: name !< of the parameter
-    character(*), intent(in) :: why, way_out
-    type(diagnostic_list), intent(inout) :: faults
-    if (this%has(name)) call this%fault_parameter(faults, name, why, way_out)
-  end subroutine refuse
 
   !> The scheme that the card names. An unknown one has been reported as a wrong choice.
   subroutine choose_scheme(this, model, faults)

@@ -158,12 +158,13 @@ contains
     i = 1
     do j = 1, size(new)
       if (i <= size(old)) then
-        if (old(i)%digest == new(j)%digest .and. old(i)%keyword == new(j)%keyword) then
+        if (is_same(old(i), new(j))) then
           i = i + 1
           cycle
         end if
       end if
       if (is_addition(old, new(j))) cycle
+      if (any(is_same(old(i + 1:), new(j))) .and. .not. any(is_same(new(j:), old(i)))) exit
       call refuse('the deck has changed: '//new(j)%place//': *'//new(j)%keyword//' is new or '// &
                   'not as it was', error)
       return
@@ -172,6 +173,12 @@ contains
     call refuse('the deck has changed: *'//trim(old(i)%keyword//' '//old(i)%name)// &
                 ' of the checkpoint is missing', error)
   end subroutine compare
+
+  !> Whether two cards say the same.
+  elemental logical function is_same(one, other)
+    type(card_digest), intent(in) :: one, other
+    is_same = one%digest == other%digest .and. one%keyword == other%keyword
+  end function is_same
 
   !> Whether a card defines something that the deck of the checkpoint did not have.
   logical function is_addition(old, new)

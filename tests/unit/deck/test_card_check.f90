@@ -160,11 +160,11 @@ contains
     call expect('*ELASTIC, TIPE=ISO'//lf//'1', at// &
                 "1: *ELASTIC: unknown parameter 'TIPE'; expected TYPE; did you mean 'TYPE'?")
     call expect('*ELASTIC, TYPE=ISOTROPC'//lf//'1', at//"1: *ELASTIC: TYPE: found 'ISOTROPC'; "// &
-                "expected kind of elasticity, one of ISOTROPIC, ISO; did you mean 'ISOTROPIC'?")
-    call expect('*ELASTIC, TYPE='//lf//'1', at//'1: *ELASTIC: TYPE has no value; expected kind '// &
-                'of elasticity, one of ISOTROPIC, ISO')
-    call expect('*ELASTIC, TYPE'//lf//'1', at//'1: *ELASTIC: TYPE has no value; expected kind '// &
-                'of elasticity, one of ISOTROPIC, ISO')
+                "expected one of ISOTROPIC, ISO; did you mean 'ISOTROPIC'?")
+    call expect('*ELASTIC, TYPE='//lf//'1', at//'1: *ELASTIC: TYPE has no value; expected one '// &
+                'of ISOTROPIC, ISO')
+    call expect('*ELASTIC, TYPE'//lf//'1', at//'1: *ELASTIC: TYPE has no value; expected one '// &
+                'of ISOTROPIC, ISO')
     call expect('*NSET'//lf//'1', at//'1: *NSET: parameter NSET is missing; expected NSET = '// &
                 'name of the set, a name')
     call expect('*NSET, NSET=a, GENERATE=YES'//lf//'1', at//'1: *NSET: GENERATE takes no '// &
@@ -242,7 +242,7 @@ contains
     call expect('*LAW, TYPE=SOFT', at//'1: *LAW: parameter G is missing; expected G = energy, '// &
                 'a number')
     call expect('*LAW, TYPE=STIF, K=1, G=3', at//"1: *LAW: TYPE: found 'STIF'; expected "// &
-                "which, one of STIFF, SOFT; did you mean 'STIFF'?")
+                "one of STIFF, SOFT; did you mean 'STIFF'?")
     call describe_keyword(specs, 'LAW', text, is_known)
     call check_text(log, text, '*LAW'//lf//'  A law.'//lf//lf//'Parameters'//lf// &
                     '  TYPE               which; one of STIFF, SOFT; default STIFF'//lf// &
