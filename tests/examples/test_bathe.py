@@ -242,7 +242,7 @@ def test_help_and_messages_name_the_new_scheme(example):
     text = program.call("--keywords", "DYNAMIC").stdout
     assert "method of time integration; one of HHT, REDUCED, BATHE; default HHT" in text
     run = program(edited(DECK, ("SCHEME=BATHE", "SCHEME=BATH")), code=2)
-    assert "expected method of time integration, one of HHT, REDUCED, BATHE" in run.stderr
+    assert "expected one of HHT, REDUCED, BATHE" in run.stderr
     run = program(edited(DECK, ("SCHEME=BATHE", "SCHEME=BATHE, ALPHA=-0.1")), code=2)
     assert "has no effect with SCHEME=BATHE; expected ALPHA with SCHEME=HHT only" in run.stderr
     run = program(edited(DECK, ("0.01, 1.25\n", "0.01, 1.25\n*CONTROLS, JOINT FORCES=END\n")))

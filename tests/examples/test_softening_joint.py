@@ -70,7 +70,7 @@ def test_help_and_messages_name_the_new_law(example):
     assert "work of fracture per area; a number > 0 [J/m2]; required" in text
     deck = DECK.read_text(encoding="utf-8")
     run = program(deck.replace("TYPE=SOFTENING", "TYPE=SOFT"), code=2)
-    assert "expected type of the law, one of CONTRACTION, SOFTENING" in run.stderr
+    assert "expected one of CONTRACTION, SOFTENING" in run.stderr
     run = program(deck.replace("FRACTURE ENERGY=100.", "FRICTION=0.5"), code=2)
     assert "unknown parameter 'FRICTION'; expected one of NAME, TYPE, KN, KT," in run.stderr
     assert "parameter FRACTURE ENERGY is missing" in run.stderr
