@@ -24,7 +24,12 @@ contains
     logical :: is_used(size(model%problem%materials))
     integer :: i, s
     if (.not. any(model%problem%steps%procedure%has_inertia)) return
-    is_used = [(any(model%problem%mesh%material_of_element == i), i=1, size(is_used))]
+    is_used = .false.
+    do i = 1, size(model%problem%mesh%material_of_element)
+      associate (material => model%problem%mesh%material_of_element(i))
+        if (material > 0) is_used(material) = .true.
+      end associate
+    end do
     call warn_of_densities(model, is_used, faults)
     do s = 1, size(model%problem%steps)
       if (model%problem%steps(s)%procedure%scheme /= 'REDUCED') cycle
