@@ -26,10 +26,10 @@ module reduced_massless
   end type massless_part
 
   !> h over the mean squared frequency of the unknowns, sum of K_ii over sum of M_ii: what is held
-  !> moves by 1e-6 of what it would. Larger values leave more round-off where jumps are unknowns.
+  !> moves by 1e-5 of what it would. Larger values leave more round-off where jumps are unknowns.
   real(rk), parameter :: hold_share = 1.0e5_rk
   !> Share of what is held in the stiffness of the response above which no massless solid moves: it
-  !> is 1e-6 where massless solids move, and 1 where none do.
+  !> is 1e-5 where massless solids move, and 1 where none do.
   real(rk), parameter :: most_held = 0.5_rk
   integer, parameter :: num_samples = 8
   !> Shapes follow twice: the first time, round-off of large shapes in the rock is left.

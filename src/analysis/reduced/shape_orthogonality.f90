@@ -25,13 +25,16 @@ contains
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: shift !< s [1/s2]
     real(rk), allocatable, intent(inout) :: shapes(:, :) !< (num_free, shapes)
-    real(rk), allocatable :: measure(:), block(:, :)
+    real(rk), allocatable :: measure(:), block(:, :), product(:, :)
     integer :: first, num_kept
     measure = system%stiffness + shift*system%mass
     num_kept = 0
     do first = 1, size(shapes, 2), block_size
       block = shapes(:, first:min(first + block_size - 1, size(shapes, 2)))
-      call separate_twice(system, measure, shapes(:, :num_kept), least_left, block)
+      allocate (product, mold=block)
+      call multiply_columns(system%matrix, measure, block, product)
+      call separate_twice(system, measure, shapes(:, :num_kept), least_left, block, product)
+      deallocate (product)
       shapes(:, num_kept + 1:num_kept + size(block, 2)) = block
       num_kept = num_kept + size(block, 2)
     end do
@@ -53,25 +56,25 @@ contains
     call multiply_columns(system%matrix, measure, block, product)
     do k = 1, size(block, 2)
       length = sqrt(max(0.0_rk, dot(block(:, k), product(:, k))))
-      if (length > 0.0_rk) block(:, k) = block(:, k)/length
+      if (.not. length > 0.0_rk) cycle
+      block(:, k) = block(:, k)/length
+      product(:, k) = product(:, k)/length
     end do
-    call separate_twice(system, measure, others, least_part, block)
+    call separate_twice(system, measure, others, least_part, block, product)
   end subroutine orthonormalise
 
   !> Makes the shapes of a block orthogonal to the others and to each other, twice against
   !> round-off, and their size one. Those with a part of less than `least` beyond the others are
   !> taken out.
-  subroutine separate_twice(system, measure, others, least, block)
+  subroutine separate_twice(system, measure, others, least, block, product)
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: measure(:) !< values of the stiffness
     real(rk), intent(in), contiguous :: others(:, :) !< (num_free, shapes)
     real(rk), intent(in) :: least
     real(rk), allocatable, intent(inout) :: block(:, :) !< (num_free, shapes)
-    real(rk), allocatable :: product(:, :) ! stiffness times the block
+    real(rk), allocatable, intent(inout) :: product(:, :) !< stiffness times the block
     integer :: pass
-    allocate (product, mold=block)
     do pass = 1, 2
-      call multiply_columns(system%matrix, measure, block, product)
       call subtract_times(others, transposed_times(others, product), block)
       call multiply_columns(system%matrix, measure, block, product)
       call separate(merge(least, least_rest, pass == 1), block, product)
