@@ -14,7 +14,7 @@ module named_things
   private
   public :: nodes_at, nodes_in_order_at, elements_at, elements_of_set, nodes_of_set
   public :: find_surface, find_surface_name, find_surface_at, find_amplitude, find_material
-  public :: joint_names, set_names, surface_names, longest_name, with_article
+  public :: joint_names, nearest_set, set_names, surface_names, longest_name, with_article
 
 contains
 
@@ -179,19 +179,16 @@ contains
     character(*), intent(in) :: kind !< 'node' or 'element'
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: problem, nearest
+    character(:), allocatable :: problem
     if (is_too_large(this%text_at(line, field))) then
       call this%fault_at(faults, line, field, found_no_integer(this%text_at(line, field)), &
                          'the id of one '//kind)
       return
     end if
     problem = 'there is no '//kind//" set '"//this%text_at(line, field)//"' above this line"
-    nearest = ''
-    if (is_shown(faults, problem)) then
-      nearest = nearest_word(this%word_at(line, field), set_names(sets))
-    end if
     call this%fault_at(faults, line, field, problem, &
-                       'the id of one '//kind//' or the name of a set defined above', nearest)
+                       'the id of one '//kind//' or the name of a set defined above', &
+                       nearest_set(this%word_at(line, field), sets, problem, faults))
   end subroutine fault_unknown_set
 
   !> Elements of the set that a parameter names; empty after a fault.
@@ -220,7 +217,7 @@ contains
     type(set_list), intent(in) :: sets
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
-    character(:), allocatable :: problem, nearest
+    character(:), allocatable :: problem
     integer :: found
     found = sets%find(this%word(parameter))
     if (found > 0) then
@@ -229,13 +226,20 @@ contains
     end if
     allocate (members(0))
     problem = 'there is no '//kind//" set '"//this%text(parameter)//"' above this line"
-    nearest = ''
-    if (is_shown(faults, problem)) then
-      nearest = nearest_word(this%word(parameter), set_names(sets))
-    end if
     call this%fault_parameter(faults, parameter, problem, 'the name of a set defined above', &
-                              nearest)
+                              nearest_set(this%word(parameter), sets, problem, faults))
   end subroutine members_of_set
+
+  !> The set with a name of nearly this spelling, for an error that is shown; '' for another.
+  function nearest_set(word, sets, problem, faults) result(nearest)
+    character(*), intent(in) :: word !< upper case
+    type(set_list), intent(in) :: sets
+    character(*), intent(in) :: problem !< of the error
+    type(diagnostic_list), intent(in) :: faults
+    character(:), allocatable :: nearest
+    nearest = ''
+    if (is_shown(faults, problem)) nearest = nearest_word(word, set_names(sets))
+  end function nearest_set
 
   !> Position of the surface of that name, 0 when there is none so far.
   pure integer function find_surface_name(model, name) result(found)
@@ -252,18 +256,15 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
     integer, intent(in), optional :: field
-    character(:), allocatable :: problem, nearest
+    character(:), allocatable :: problem
     integer :: at
     at = 1
     if (present(field)) at = field
     found = find_surface_name(model, this%word_at(line, at))
     if (found > 0) return
     problem = "there is no surface '"//this%text_at(line, at)//"' above this line"
-    nearest = ''
-    if (is_shown(faults, problem)) then
-      nearest = nearest_word(this%word_at(line, at), surface_names(model))
-    end if
-    call this%fault_at(faults, line, at, problem, 'a surface defined above', nearest)
+    call this%fault_at(faults, line, at, problem, 'a surface defined above', &
+                       nearest_surface(this%word_at(line, at), model, problem, faults))
   end subroutine find_surface_at
 
   !> Position of the surface that SURFACE names; 0 after a fault.
@@ -272,16 +273,24 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, intent(out) :: found
-    character(:), allocatable :: problem, nearest
+    character(:), allocatable :: problem
     found = find_surface_name(model, this%word('SURFACE'))
     if (found > 0) return
     problem = "there is no surface '"//this%text('SURFACE')//"' above this line"
-    nearest = ''
-    if (is_shown(faults, problem)) then
-      nearest = nearest_word(this%word('SURFACE'), surface_names(model))
-    end if
-    call this%fault_parameter(faults, 'SURFACE', problem, 'a surface defined above', nearest)
+    call this%fault_parameter(faults, 'SURFACE', problem, 'a surface defined above', &
+                              nearest_surface(this%word('SURFACE'), model, problem, faults))
   end subroutine find_surface
+
+  !> The surface with a name of nearly this spelling, for an error that is shown; '' for another.
+  function nearest_surface(word, model, problem, faults) result(nearest)
+    character(*), intent(in) :: word !< upper case
+    type(draft), intent(in) :: model
+    character(*), intent(in) :: problem !< of the error
+    type(diagnostic_list), intent(in) :: faults
+    character(:), allocatable :: nearest
+    nearest = ''
+    if (is_shown(faults, problem)) nearest = nearest_word(word, surface_names(model))
+  end function nearest_surface
 
   !> Names of surfaces.
   pure function surface_names(model) result(names)

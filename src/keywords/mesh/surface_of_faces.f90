@@ -2,13 +2,12 @@
 module surface_of_faces
   use dam_mesh, only: surface
   use deck_card, only: card
-  use diagnostics, only: diagnostic_list, is_shown
+  use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use growing_lists, only: append
   use mesh_faces, only: face_nodes, face_table, find_exterior, find_face, insert_face, open_table
   use model_draft, only: draft
-  use named_things, only: set_names
-  use nearest_words, only: nearest_word
+  use named_things, only: nearest_set
   use sorted_lists, only: sorted_unique
   use write_text, only: as_text
   implicit none
@@ -87,7 +86,7 @@ contains
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
     integer, allocatable, intent(out) :: members(:)
-    character(:), allocatable :: problem, nearest
+    character(:), allocatable :: problem
     integer :: number
     allocate (members(0))
     number = model%faces%sets%find(this%word_at(line, 1))
@@ -96,12 +95,9 @@ contains
                          'the name of a set alone')
     else if (number == 0) then
       problem = "there is no set of faces '"//this%text_at(line, 1)//"'"
-      nearest = ''
-      if (is_shown(faults, problem)) then
-        nearest = nearest_word(this%word_at(line, 1), set_names(model%faces%sets))
-      end if
       call this%fault_at(faults, line, 1, problem, &
-                         'a set of elements CPS4, S4, CPS3 or the like beside the solids', nearest)
+                         'a set of elements CPS4, S4, CPS3 or the like beside the solids', &
+                         nearest_set(this%word_at(line, 1), model%faces%sets, problem, faults))
     else
       members = model%faces%sets%sets(number)%members
     end if
