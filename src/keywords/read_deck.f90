@@ -43,6 +43,7 @@ module read_deck
   use keyword_spec, only: keyword, without_effect
   use keywords_elements, only: make_room_for_elements, trim_mesh
   use keywords_nodes, only: make_room_for_nodes
+  use load_cards, only: list_load_cards, load_card_list
   use model_draft, only: draft
   use umat_loader, only: user_library
   use verify_model, only: verify
@@ -96,6 +97,7 @@ contains
   subroutine complete_and_verify(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
+    type(load_card_list) :: cards
     call complete_model(model, faults)
     if (.not. faults%has_errors()) call verify(model, faults)
     if (.not. faults%has_errors()) call verify_names(model, faults)
@@ -103,13 +105,14 @@ contains
     if (faults%has_errors()) return
     call warn_of_mesh(model, faults)
     call warn_of_unused(model, faults)
-    call warn_of_loads(model, faults)
-    call warn_of_pressures(model, faults)
-    call warn_of_inner_faces(model, faults)
+    call list_load_cards(model%cards, cards)
+    call warn_of_loads(model, cards, faults)
+    call warn_of_pressures(model, cards, faults)
+    call warn_of_inner_faces(model, cards, faults)
     call warn_of_units(model, faults)
     call warn_of_magnitudes(model, faults)
     call warn_of_light_solids(model, faults)
-    call warn_of_motions(model, faults)
+    call warn_of_motions(model, cards, faults)
     call warn_of_growth(model, faults)
     call warn_of_heat(model, faults)
     call warn_of_water(model, faults)

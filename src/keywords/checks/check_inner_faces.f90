@@ -1,12 +1,12 @@
 !> Warns of pressure and water on a face between two solids: the load pushes them apart, and its
 !> resultant has the sign opposite to that on the outer face of the same elements.
 module check_inner_faces
-  use check_pressures, only: card_of_load, find_faces
+  use check_pressures, only: find_faces
   use dam_mesh, only: surface
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use kinds, only: rk
-  use load_cards, only: list_load_cards, load_card_list
+  use load_cards, only: load_card_list
   use mesh_faces, only: count_corners, face_nodes, face_table, find_face, insert_face, open_table
   use model_draft, only: draft
   use write_text, only: as_text
@@ -30,12 +30,12 @@ module check_inner_faces
 contains
 
   !> One warning for each load. The deck must have no errors.
-  subroutine warn_of_inner_faces(model, faults)
+  subroutine warn_of_inner_faces(model, cards, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards !< of the deck
     type(diagnostic_list), intent(inout) :: faults
     type(loaded_faces) :: list
     type(acting_steps) :: steps
-    type(load_card_list) :: cards
     integer, allocatable :: first(:), num(:) !< (loads) first such face, and how many there are
     integer :: i, s
     call list_faces(model, list)
@@ -43,7 +43,6 @@ contains
     call find_solids_behind(model, list)
     if (all(list%behind == 0)) return
     call list_steps(model, steps)
-    call list_load_cards(model%cards, cards)
     allocate (first(size(model%problem%loads)), num(size(model%problem%loads)), source=0)
     do i = list%table%num_faces, 1, -1
       if (list%behind(i) == 0) cycle
@@ -180,14 +179,15 @@ contains
     integer, intent(in) :: s !< step
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: text
+    integer :: found
     associate (mesh => model%problem%mesh, item => model%problem%loads(list%load(i))%item)
       text = 'face S'//as_text(list%face(i))//' of element '// &
              as_text(mesh%element_id(list%element(i)))//' lies inside the solid: element '// &
              as_text(mesh%element_id(list%behind(i)))//" is behind it, and '"//item%target// &
              "' pushes both elements apart"
       if (num > 1) text = text//'; '//as_text(num)//' such faces'
-      call model%cards(card_of_load(model, cards, s, item))%warn(faults, text, &
-                                                                 'outer faces of the solid')
+      found = cards%find(item%family, item%target, s, otherwise=model%procedure_card(s))
+      call model%cards(found)%warn(faults, text, 'outer faces of the solid')
     end associate
   end subroutine warn
 end module check_inner_faces

@@ -7,7 +7,7 @@ module check_loads
   use growing_lists, only: append, make_room
   use kinds, only: rk
   use load_base_motion, only: base_motion
-  use load_cards, only: list_load_cards, load_card_list, target_of_motion
+  use load_cards, only: load_card_list, target_of_motion
   use load_gravity, only: gravity_load
   use mesh_faces, only: face_nodes
   use model_draft, only: draft
@@ -42,11 +42,10 @@ module check_loads
 contains
 
   !> The deck must have no errors.
-  subroutine warn_of_loads(model, faults)
+  subroutine warn_of_loads(model, cards, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards !< of the deck
     type(diagnostic_list), intent(inout) :: faults
-    type(load_card_list) :: cards
-    call list_load_cards(model%cards, cards)
     call warn_of_weights(model, cards, faults)
     call warn_of_lost_weights(model, cards, faults)
     call warn_of_records(model, cards, faults)
@@ -71,7 +70,8 @@ contains
       call find_second_weight(model, s, first, second, e)
       if (second == 0) cycle
       associate (loads => model%problem%loads)
-        call model%cards(card_of_weight(model, cards, s, loads(second)%item%target))%warn( &
+        call model%cards(cards%find('DLOAD', loads(second)%item%target, s, &
+                                    otherwise=model%procedure_card(s)))%warn( &
           faults, 'the weight of element '//as_text(model%problem%mesh%element_id(e))// &
           ' acts twice in step '//as_text(s)//": '"//loads(first)%item%target//"' and '"// &
           loads(second)%item%target//"' add up")
@@ -97,7 +97,8 @@ contains
           select type (old => model%problem%loads(work%load)%item)
           type is (gravity_load)
             if (.not. is_turned(model, new, old)) cycle
-            call model%cards(card_of_weight(model, cards, s, old%target))%warn( &
+            call model%cards(cards%find('DLOAD', old%target, s, &
+                                        otherwise=model%procedure_card(s)))%warn( &
               faults, "'"//old%target//"' of an earlier step ends: this card replaces it by "// &
               'one of another direction; expected both directions in this step if both are meant')
           end select
@@ -201,16 +202,6 @@ contains
     owner = 0
   end function owner_of
 
-  !> The last card that gives a weight, up to a step; else the card of the step's procedure.
-  pure integer function card_of_weight(model, cards, s, target) result(found)
-    type(draft), intent(in) :: model
-    type(load_card_list), intent(in) :: cards
-    integer, intent(in) :: s !< step
-    character(*), intent(in) :: target !< of the load: 'DAM GRAV'
-    found = cards%find('DLOAD', target, s)
-    if (found == 0) found = model%procedure_card(s)
-  end function card_of_weight
-
   !> Records of base motion whose end value acts on.
   subroutine warn_of_records(model, cards, faults)
     type(draft), intent(in) :: model
@@ -244,7 +235,8 @@ contains
       if (abs(last) <= small_share*maxval(abs(record%value))) return
       ends_at = record%time(size(record%time))
       if (ends_at > (1.0_rk + round_off)*end_of_clock(model, s, record)) return
-      place = cards%find('BASE MOTION', target_of_motion(dof, record%name), s)
+      place = cards%find('BASE MOTION', target_of_motion(dof, record%name), s, &
+                         otherwise=0)
       if (place == 0) return
       call model%cards(place)%warn(faults, "the record '"//record%name//"' ends at "// &
                                    as_text(last*work%end_factor)//', not at zero: this '// &

@@ -9,7 +9,7 @@ module check_pressures
   use diagnostics, only: diagnostic_list
   use growing_lists, only: append, make_room
   use kinds, only: rk
-  use load_cards, only: list_load_cards, load_card_list
+  use load_cards, only: load_card_list
   use load_pressure, only: pressure_load
   use load_reservoir, only: reservoir_load
   use model_draft, only: draft
@@ -17,7 +17,7 @@ module check_pressures
   use write_text, only: as_text
   implicit none
   private
-  public :: card_of_load, find_faces, warn_of_pressures
+  public :: find_faces, warn_of_pressures
 
   integer, parameter :: num_kinds = 3 !< of loads on faces
 
@@ -42,15 +42,14 @@ module check_pressures
 contains
 
   !> The deck must have no errors.
-  subroutine warn_of_pressures(model, faults)
+  subroutine warn_of_pressures(model, cards, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards !< of the deck
     type(diagnostic_list), intent(inout) :: faults
-    type(load_card_list) :: cards
     type(pushed_faces) :: pushed
     type(named_loads) :: named
     logical, allocatable :: is_old(:) !< (loads) acts in the step before
     integer :: s, i, old, element
-    call list_load_cards(model%cards, cards)
     allocate (is_old(size(model%problem%loads)))
     allocate (pushed%has(size(is_old)), source=.false.)
     do s = 2, size(model%problem%steps)
@@ -161,7 +160,9 @@ contains
         if (model%problem%loads(now(i)%load)%item%family /= keyword) cycle
         if (is_ending(now(i)) .or. .not. is_old(now(i)%load)) cycle
         if (.not. is_pressure(model%problem%loads(now(i)%load)%item)) cycle
-        found = card_of_load(model, cards, s, model%problem%loads(now(i)%load)%item)
+        associate (item => model%problem%loads(now(i)%load)%item)
+          found = cards%find(item%family, item%target, s, otherwise=model%procedure_card(s))
+        end associate
         stays(now(i)%load) = step(found) < s
       end do
     end associate
@@ -282,6 +283,7 @@ contains
     integer, intent(in) :: first, second !< loads
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: what, remedy
+    integer :: found
     associate (loads => model%problem%loads)
       what = 'pressure'
       remedy = 'a load is replaced under its own name, or with OP=NEW of *'// &
@@ -290,20 +292,12 @@ contains
         what = 'water of *RESERVOIR'
         remedy = 'a reservoir is replaced under its own name, and emptied there by HYDROSTATIC=NO'
       end if
-      call model%cards(card_of_load(model, cards, s, loads(second)%item))%warn( &
+      found = cards%find(loads(second)%item%family, loads(second)%item%target, s, &
+                         otherwise=model%procedure_card(s))
+      call model%cards(found)%warn( &
         faults, 'element '//as_text(model%problem%mesh%element_id(element))//' keeps the '// &
         what//" '"//loads(first)%item%target//"' of an earlier step beside '"// &
         loads(second)%item%target//"': "//remedy)
     end associate
   end subroutine warn_of_both
-
-  !> The last card that gives a load, up to a step; else the card of the step's procedure.
-  pure integer function card_of_load(model, cards, s, item) result(found)
-    type(draft), intent(in) :: model
-    type(load_card_list), intent(in) :: cards
-    integer, intent(in) :: s !< step
-    class(load), intent(in) :: item
-    found = cards%find(item%family, item%target, s)
-    if (found == 0) found = model%procedure_card(s)
-  end function card_of_load
 end module check_pressures

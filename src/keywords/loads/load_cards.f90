@@ -96,14 +96,15 @@ contains
     name = family//new_line('a')//target
   end function name_of
 
-  !> The last card that gives a load, up to a step; 0 for none.
-  pure integer function find(self, family, target, step) result(number)
+  !> The last card that gives a load, up to a step; `otherwise` for none.
+  pure integer function find(self, family, target, step, otherwise) result(number)
     class(load_card_list), intent(in) :: self
     character(*), intent(in) :: family !< its keyword
     character(*), intent(in) :: target !< 'DAM GRAV', 'UPSTREAM', a reservoir, a motion
     integer, intent(in) :: step
+    integer, intent(in) :: otherwise !< a card, or 0
     integer :: name, entry
-    number = 0
+    number = otherwise
     name = self%names%find(name_of(family, target))
     if (name == 0) return
     entry = self%newest(name)

@@ -6,7 +6,7 @@ module check_motions
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_base_motion, only: base_motion
-  use load_cards, only: list_load_cards, load_card_list, target_of_motion
+  use load_cards, only: load_card_list, target_of_motion
   use load_gravity, only: gravity_load
   use model_draft, only: draft
   use step_plan, only: span_of_step, step_load
@@ -34,13 +34,12 @@ module check_motions
 contains
 
   !> The deck must have no errors. One warning of a kind for each record.
-  subroutine warn_of_motions(model, faults)
+  subroutine warn_of_motions(model, cards, faults)
     type(draft), intent(in) :: model
+    type(load_card_list), intent(in) :: cards !< of the deck
     type(diagnostic_list), intent(inout) :: faults
     type(view_of_record) :: views(size(model%problem%amplitudes))
-    type(load_card_list) :: cards
     integer :: s, i
-    call list_load_cards(model%cards, cards)
     do s = 1, size(model%problem%steps)
       if (.not. model%problem%steps(s)%procedure%has_inertia) cycle
       do i = 1, size(model%problem%steps(s)%loads)
@@ -70,7 +69,8 @@ contains
         view%seen = max(view%seen, peak)
         view%until = max(view%until, span(2))
         if (view%place > 0) return
-        view%place = cards%find('BASE MOTION', target_of_motion(motion%dof, record%name), s)
+        view%place = cards%find('BASE MOTION', target_of_motion(motion%dof, record%name), s, &
+                                otherwise=0)
         if (view%place == 0) return
         call warn_of_start(model, view%place, s, record, faults)
         call warn_of_peak(model, view%place, work, record, faults)
