@@ -2,6 +2,7 @@
  * not have to know the structures, which differ from version to version. */
 #include "supernodes/cholmod_factor.h"
 #include "supernodes/supernodal_solve.h"
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,6 +51,7 @@ void keyway_cholmod_finish(void *handle)
   cholmod_free_dense(&c->y, &c->common);
   cholmod_free_dense(&c->e, &c->common);
   keyway_free_single(c);
+  keyway_free_subtrees(&c->trees);
   cholmod_free_factor(&c->factor, &c->common);
   cholmod_finish(&c->common);
   free(c->is_upper);
@@ -78,6 +80,20 @@ static int postorder(struct keyway_cholmod *c, cholmod_sparse *a, int m, int *or
   return 0;
 }
 
+/* Threads beyond these do not read a factor any faster. */
+enum { most_threads = 16 };
+
+/* Chooses the parts of the factor in which threads substitute. Returns 0 for success. */
+static int plan_threads(struct keyway_cholmod *c)
+{
+  struct keyway_supernodes nodes;
+  int num_threads = omp_in_parallel() ? 1 : omp_get_max_threads();
+  if (num_threads > most_threads) num_threads = most_threads;
+  if (num_threads == 1 || !c->factor->is_super) return 0;
+  nodes = keyway_supernodes_of(c);
+  return keyway_plan_subtrees(&nodes, num_threads, &c->trees);
+}
+
 /* Plans the factor. `order` lists the unknowns in the order of elimination, 0-based, of which the
  * last m stay the last; NULL leaves it to CHOLMOD's own METIS. Returns CHOLMOD's status, 0 for
  * success. */
@@ -88,6 +104,7 @@ int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *use
   cholmod_sparse a = view(n, start, used, row, NULL);
   keyway_free_top(c);
   keyway_free_single(c);
+  keyway_free_subtrees(&c->trees);
   cholmod_free_factor(&c->factor, &c->common);
   free(c->is_upper);
   free(c->work);
@@ -102,7 +119,7 @@ int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *use
   c->factor = cholmod_analyze_p(&a, order, NULL, 0, &c->common);
   c->common.postorder = 1;
   if (!c->factor) return c->common.status ? c->common.status : -1;
-  return 0;
+  return plan_threads(c);
 }
 
 /* The smallest square of a pivot over the entry it came from, and its column. */
@@ -156,7 +173,11 @@ int keyway_cholmod_substitute(void *handle, int part, int is_forward, int n, dou
   struct keyway_supernodes nodes = keyway_supernodes_of(c);
   if (!c->work) c->work = malloc(((size_t)n + 1) * sizeof *c->work);
   if (!c->work || (part != KEYWAY_WHOLE && !c->is_upper) || n != (int)c->factor->n) return 1;
-  if (is_forward)
+  if (c->trees.num_trees > 0 && is_forward)
+    keyway_forward_in_trees(&nodes, part, c->is_upper, &c->trees, y);
+  else if (c->trees.num_trees > 0)
+    keyway_backward_in_trees(&nodes, part, c->is_upper, &c->trees, y);
+  else if (is_forward)
     keyway_substitute_forward(&nodes, part, c->is_upper, y, c->work);
   else
     keyway_substitute_backward(&nodes, part, c->is_upper, y, c->work);

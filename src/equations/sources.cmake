@@ -26,6 +26,7 @@ set(sources
   supernodes/refined_solve.f90
   supernodes/selected_inverse.c
   supernodes/single_factor.c
+  supernodes/subtrees.c
   supernodes/supernodal_solve.c
   unknown_layout.f90
 )

@@ -1,4 +1,5 @@
-!> A box of 6 x 6 x 6 nodes, whose cells are webs of springs: a small symmetric positive matrix.
+!> A box of nodes, 6 along each side unless asked for, whose cells are webs of springs: a symmetric
+!> positive matrix.
 module spring_box
   use kinds, only: rk
   use errors, only: error_type
@@ -11,24 +12,27 @@ module spring_box
   private
   public :: make_box
 
-  integer, parameter :: side = 6
+  integer, parameter :: usual_side = 6
 
 contains
 
   !> The nodes of the lowest layer are fixed; the last free unknowns are taken for jumps.
-  subroutine make_box(matrix, values, num_jumps)
+  subroutine make_box(matrix, values, num_jumps, nodes_of_side)
     type(pattern), intent(out) :: matrix
     real(rk), allocatable, intent(out) :: values(:)
     integer, intent(in) :: num_jumps
+    integer, intent(in), optional :: nodes_of_side
     type(numbering) :: numbers
     type(linear_links) :: links
     type(row_table) :: cells
     type(error_type), allocatable :: error
-    logical :: is_used(side**3), is_fixed(3, side**3)
-    integer :: c
-    call list_box(cells)
-    is_used = .true.
-    is_fixed = .false.
+    logical, allocatable :: is_used(:), is_fixed(:, :)
+    integer :: c, side
+    side = usual_side
+    if (present(nodes_of_side)) side = nodes_of_side
+    call list_box(side, cells)
+    allocate (is_used(side**3), source=.true.)
+    allocate (is_fixed(3, side**3), source=.false.)
     is_fixed(:, :side**2) = .true.
     call number_unknowns(displacement_dofs(side**3), is_used, is_fixed, links, numbers, error)
     if (allocated(error)) error stop 'spring_box: numbering'
@@ -41,10 +45,11 @@ contains
     end do
   end subroutine make_box
 
-  subroutine list_box(cells)
+  subroutine list_box(side, cells)
+    integer, intent(in) :: side
     type(row_table), intent(out) :: cells
-    integer, parameter :: num_cells = (side - 1)**3
-    integer :: i, j, k, c, corner
+    integer :: i, j, k, c, corner, num_cells
+    num_cells = (side - 1)**3
     allocate (cells%first(num_cells + 1), cells%item(8*num_cells))
     cells%first(:) = [(1 + 8*(c - 1), c=1, num_cells + 1)]
     c = 0

@@ -2,6 +2,7 @@
 #ifndef KEYWAY_CHOLMOD_FACTOR_H
 #define KEYWAY_CHOLMOD_FACTOR_H
 #include "selected_inverse.h"
+#include "subtrees.h"
 #include "supernodal_solve.h"
 #include <cholmod.h>
 
@@ -11,6 +12,7 @@ struct keyway_cholmod {
   cholmod_dense *x, *y, *e; /* workspace of the solves */
   char *is_upper;           /* (supernodes) the part of the active unknowns; NULL: not chosen */
   double *work;             /* (n) */
+  struct keyway_subtrees trees;
   /* The top of the factor: supernodes with chosen unknowns, and all their ancestors. */
   char *is_top;
   int *super_of, *place_of;

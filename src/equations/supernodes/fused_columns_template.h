@@ -12,6 +12,7 @@ FOR_EACH_PROCESSOR
 void OF_PRECISION(keyway_forward)(int width, int length, const VALUE *value, double *t)
 {
   const size_t n = (size_t)length;
+  const int is_ahead = asks_ahead();
   int j = 0;
   for (; j + 4 <= width; j += 4) {
     const VALUE *a = value + (size_t)j * n, *b = a + n, *c = b + n, *d = c + n;
@@ -25,7 +26,7 @@ void OF_PRECISION(keyway_forward)(int width, int length, const VALUE *value, dou
     t[j + 2] = r;
     t[j + 3] = s;
     for (; i + rows_at_once <= length; i += rows_at_once) {
-      OF_PRECISION(fetch)(d + n + i, n);
+      if (is_ahead) OF_PRECISION(fetch)(d + n + i, n);
 #pragma omp simd
       for (int k = i; k < i + rows_at_once; k++)
         t[k] -= a[k] * p + b[k] * q + (c[k] * r + d[k] * s);
@@ -45,6 +46,7 @@ FOR_EACH_PROCESSOR
 void OF_PRECISION(keyway_backward)(int width, int length, const VALUE *value, double *t)
 {
   const size_t n = (size_t)length;
+  const int is_ahead = asks_ahead();
   int j = width;
   for (; j % 4 != 0; j--) {
     const VALUE *a = value + (size_t)(j - 1) * n;
@@ -59,7 +61,7 @@ void OF_PRECISION(keyway_backward)(int width, int length, const VALUE *value, do
     int last = j + 4;
     for (int i = last; i < length; i = last) {
       last = i + rows_at_once < length ? i + rows_at_once : length;
-      OF_PRECISION(fetch)(a - 4 * n + i, n);
+      if (is_ahead) OF_PRECISION(fetch)(a - 4 * n + i, n);
 #pragma omp simd reduction(+ : p, q, r, s)
       for (int k = i; k < last; k++) {
         p += a[k] * t[k];

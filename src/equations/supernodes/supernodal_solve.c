@@ -31,7 +31,7 @@ double keyway_mark_upper(const struct keyway_supernodes *l, int count, const int
   return upper / (double)l->value_start[l->num_supernodes];
 }
 
-static int is_in_part(int s, enum keyway_part part, const char *is_upper)
+int keyway_is_in_part(int s, enum keyway_part part, const char *is_upper)
 {
   return part == KEYWAY_WHOLE || is_upper[s] == (part == KEYWAY_UPPER);
 }
@@ -43,11 +43,10 @@ static const double *double_values(const struct keyway_supernodes *l, int s)
   return l->part_start[s] < 0 ? l->value - l->part_start[s] - 1 : NULL;
 }
 
-static void forward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
+void keyway_forward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
 {
   int first = l->column[s], width = l->column[s + 1] - first;
   int length = l->row_start[s + 1] - l->row_start[s];
-  const int *row = l->row + l->row_start[s];
   const double *value = double_values(l, s);
   memcpy(work, y + first, (size_t)width * sizeof *y);
   memset(work + width, 0, (size_t)(length - width) * sizeof *y);
@@ -56,10 +55,9 @@ static void forward_one(const struct keyway_supernodes *l, int s, double *y, dou
   else
     keyway_forward_single(width, length, l->single + l->part_start[s], work);
   memcpy(y + first, work, (size_t)width * sizeof *y);
-  for (int i = width; i < length; i++) y[row[i]] += work[i];
 }
 
-static void backward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
+void keyway_backward_one(const struct keyway_supernodes *l, int s, double *y, double *work)
 {
   int first = l->column[s], width = l->column[s + 1] - first;
   int length = l->row_start[s + 1] - l->row_start[s];
@@ -76,13 +74,18 @@ static void backward_one(const struct keyway_supernodes *l, int s, double *y, do
 void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,
                                const char *is_upper, double *y, double *work)
 {
-  for (int s = 0; s < l->num_supernodes; s++)
-    if (is_in_part(s, part, is_upper)) forward_one(l, s, y, work);
+  for (int s = 0; s < l->num_supernodes; s++) {
+    const int *row = l->row + l->row_start[s];
+    int length = l->row_start[s + 1] - l->row_start[s];
+    if (!keyway_is_in_part(s, part, is_upper)) continue;
+    keyway_forward_one(l, s, y, work);
+    for (int i = l->column[s + 1] - l->column[s]; i < length; i++) y[row[i]] += work[i];
+  }
 }
 
 void keyway_substitute_backward(const struct keyway_supernodes *l, enum keyway_part part,
                                 const char *is_upper, double *y, double *work)
 {
   for (int s = l->num_supernodes - 1; s >= 0; s--)
-    if (is_in_part(s, part, is_upper)) backward_one(l, s, y, work);
+    if (keyway_is_in_part(s, part, is_upper)) keyway_backward_one(l, s, y, work);
 }

@@ -23,6 +23,15 @@ enum keyway_part { KEYWAY_WHOLE = 0, KEYWAY_LOWER = 1, KEYWAY_UPPER = 2 };
 double keyway_mark_upper(const struct keyway_supernodes *l, int count, const int *column,
                          char *is_upper);
 
+int keyway_is_in_part(int s, enum keyway_part part, const char *is_upper);
+
+/* Forward substitution with the columns of one supernode: their part of y, and behind it in `work`
+ * what the other rows of the supernode get. work has room for its rows. */
+void keyway_forward_one(const struct keyway_supernodes *l, int s, double *y, double *work);
+
+/* Backward substitution with the columns of one supernode. */
+void keyway_backward_one(const struct keyway_supernodes *l, int s, double *y, double *work);
+
 /* y = L^-1 y on the supernodes of a part; work has room for a column. is_upper may be
  * NULL for the whole factor. */
 void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,
