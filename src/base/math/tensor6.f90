@@ -6,9 +6,11 @@ module tensor6
   implicit none
   private
   public :: trace, second_invariant, third_invariant, von_mises, principal_values, principal_axes
+  public :: find_principal_values
   public :: as_matrix, sum_tensors
 
   real(rk), parameter :: sin_of_third = sqrt(0.75_rk) !< of a turn
+  integer, parameter :: at_once = 128 !< tensors whose numbers stay in the nearest cache
   real(rk), parameter :: safe_cosine = 0.99_rk !< below, 1 - c**2 of its third loses one digit
   real(rk), parameter :: smallest_j2 = 1.0e-180_rk !< below, third powers of stresses lose digits
   real(rk), parameter :: largest_j2 = 1.0e180_rk !< above, third powers overflow
@@ -92,6 +94,60 @@ contains
       values = values_from_plane(t)
     end if
   end function principal_values
+
+  !> Principal values of many tensors: the numbers of `principal_values`, by a loop that the
+  !> compiler turns into operations on several tensors at once.
+  pure subroutine find_principal_values(num_tensors, tensors, values)
+    integer, intent(in) :: num_tensors
+    real(rk), intent(in) :: tensors(6, num_tensors)
+    real(rk), intent(out) :: values(3, num_tensors) !< the largest first
+    real(rk) :: turned(at_once, 6), found(at_once, 3), cosine(at_once)
+    integer :: i, j, k, n
+    do k = 0, num_tensors - 1, at_once
+      n = min(at_once, num_tensors - k)
+      do i = 1, n
+        do j = 1, 6
+          turned(i, j) = tensors(j, k + i)
+        end do
+      end do
+      call take_lode_angles(n, turned, found, cosine)
+      do i = 1, n
+        if (abs(cosine(i)) < safe_cosine) then
+          values(:, k + i) = found(i, :)
+        else
+          values(:, k + i) = values_from_plane(tensors(:, k + i))
+        end if
+      end do
+    end do
+  end subroutine find_principal_values
+
+  !> Principal values from the Lode angle, as in `principal_values`; a cosine of 1 where they are
+  !> not to be used.
+  pure subroutine take_lode_angles(n, t, values, cosine)
+    integer, intent(in) :: n
+    real(rk), intent(in) :: t(at_once, 6) !< n tensors
+    real(rk), intent(out) :: values(at_once, 3), cosine(at_once) !< of n tensors
+    real(rk) :: mean, j2, j3, s1, s2, s3, radius, third, single, half
+    integer :: i
+    do i = 1, n
+      mean = (t(i, 1) + t(i, 2) + t(i, 3))/3.0_rk
+      s1 = t(i, 1) - mean
+      s2 = t(i, 2) - mean
+      s3 = t(i, 3) - mean
+      j2 = ((t(i, 1) - t(i, 2))**2 + (t(i, 2) - t(i, 3))**2 + (t(i, 3) - t(i, 1))**2)/6.0_rk &
+           + (t(i, 4)**2 + t(i, 5)**2 + t(i, 6)**2)
+      j3 = s1*s2*s3 + 2.0_rk*t(i, 4)*t(i, 5)*t(i, 6) &
+           - s1*t(i, 6)**2 - s2*t(i, 5)**2 - s3*t(i, 4)**2
+      radius = 2.0_rk*sqrt(min(max(j2, smallest_j2), largest_j2)/3.0_rk)
+      cosine(i) = merge(4.0_rk*j3/radius**3, 1.0_rk, j2 > smallest_j2 .and. j2 < largest_j2)
+      third = cosine_of_third(min(abs(cosine(i)), 1.0_rk))
+      single = sign(radius*third, cosine(i))
+      half = sin_of_third*radius*sqrt(max(0.0_rk, 1.0_rk - third**2))
+      values(i, 1) = mean + max(single, half - 0.5_rk*single)
+      values(i, 2) = mean - 0.5_rk*single - sign(half, -cosine(i))
+      values(i, 3) = mean + min(single, -half - 0.5_rk*single)
+    end do
+  end subroutine take_lode_angles
 
   !> Principal values, of which two may be close to each other, and all tiny or huge.
   !>

@@ -9,7 +9,7 @@ module law_fields
   use stress_recovery, only: recovery_plan, max_points
   implicit none
   private
-  public :: width_of_field, field_of_block, field_at_points, mean_of_elements
+  public :: width_of_field, field_of_block, field_at_points, take_block, mean_of_elements
   public :: find_inelastic_solids, nodes_of_solids, is_zero_while_elastic
 
 contains
@@ -94,6 +94,23 @@ contains
       end do
     end do
   end subroutine field_at_points
+
+  !> A component of values at the points of all solids, at the points of an inelastic block.
+  pure subroutine take_block(model, plan, block, at_points, values)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    integer, intent(in) :: block !< position in the problem's list
+    real(rk), intent(in) :: at_points(:, :) !< (max_points, solids)
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
+    integer :: e, n
+    associate (own => model%inelastic(block))
+      n = own%points_of_element
+      allocate (values(1, n*size(own%elements)))
+      do e = 1, size(own%elements)
+        values(1, (e - 1)*n + 1:e*n) = at_points(:n, plan%solid_of_element(own%elements(e)))
+      end do
+    end associate
+  end subroutine take_block
 
   !> The mean of a scalar field over the volume of each element; zero in elastic solids.
   subroutine mean_of_elements(model, now, name, mean)

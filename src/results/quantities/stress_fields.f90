@@ -3,7 +3,9 @@ module stress_fields
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
-  use tensor6, only: principal_values
+  use processor_features, only: has_wide_registers
+  use tensor6, only: find_principal_values
+  use tensor6_wide, only: find_wide => find_principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, recover_some, &
                              copy_solid, max_points, fewest_for_threads, recover_expansions
   use node_means, only: average_at_nodes, average_at
@@ -325,20 +327,12 @@ contains
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
-    integer :: s, q
     if (self%has_point_principals) return
     call self%need_points(model, now)
     if (.not. allocated(self%point_principal)) then
       allocate (self%point_principal(3, max_points, self%plan%num_solids))
     end if
-    !$omp parallel do default(none) shared(self) private(q) schedule(static) &
-    !$omp if (max_points*self%plan%num_solids > fewest_for_threads)
-    do s = 1, self%plan%num_solids
-      do q = 1, max_points
-        self%point_principal(:, q, s) = principal_values(self%point_stress(:, q, s))
-      end do
-    end do
-    !$omp end parallel do
+    call fill_principals(max_points*self%plan%num_solids, self%point_stress, self%point_principal)
     self%has_point_principals = .true.
   end subroutine need_point_principals
 
@@ -376,14 +370,29 @@ contains
 
   !> Principal values of many tensors.
   function principals(tensor) result(values)
-    real(rk), intent(in) :: tensor(:, :) !< (6, n)
+    real(rk), intent(in), contiguous :: tensor(:, :) !< (6, n)
     real(rk) :: values(3, size(tensor, 2))
-    integer :: i
-    !$omp parallel do default(none) shared(tensor, values) schedule(static) &
-    !$omp if (size(tensor, 2) > fewest_for_threads)
-    do i = 1, size(tensor, 2)
-      values(:, i) = principal_values(tensor(:, i))
+    call fill_principals(size(tensor, 2), tensor, values)
+  end function principals
+
+  !> The same, in the copy of the loop for this processor (cmake/WideCopies.cmake).
+  subroutine fill_principals(num_tensors, tensors, values)
+    integer, intent(in) :: num_tensors
+    real(rk), intent(in) :: tensors(6, num_tensors)
+    real(rk), intent(out) :: values(3, num_tensors)
+    integer, parameter :: part = 512 !< that one thread takes
+    integer :: first, n
+    !$omp parallel do default(none) shared(num_tensors, tensors, values) private(n) &
+    !$omp schedule(static) if (num_tensors > fewest_for_threads)
+    do first = 1, num_tensors, part
+      n = min(part, num_tensors - first + 1)
+      if (has_wide_registers()) then
+        call find_wide(n, tensors(:, first:first + n - 1), values(:, first:first + n - 1))
+      else
+        call find_principal_values(n, tensors(:, first:first + n - 1), &
+                                   values(:, first:first + n - 1))
+      end if
     end do
     !$omp end parallel do
-  end function principals
+  end subroutine fill_principals
 end module stress_fields

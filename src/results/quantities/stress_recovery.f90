@@ -8,10 +8,10 @@ module stress_recovery
   use kinds, only: rk
   use element_formulation, only: solid_element
   use element_catalogue, only: is_solid, make_solid
-  use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
+  use slope_products, only: find_slopes, find_symmetric_gradient
   use analysis_state, only: state
   use thermal_recovery, only: add_expansion, take_thermal
   implicit none
@@ -311,8 +311,8 @@ contains
     integer :: k, e, status
     do k = 1, size(part%solids)
       e = plan%element_of_solid(part%solids(k))
-      call slopes_at_points(model%mesh%x(:, model%mesh%nodes(:, e)), slope, weight, status)
-      call strains_of_slopes(slope, motion_of_element(model, now, e), strain(:, :, k))
+      call find_slopes(model%mesh%x(:, model%mesh%nodes(:, e)), slope, weight, status)
+      call find_symmetric_gradient(slope, motion_of_element(model, now, e), strain(:, :, k))
     end do
   end subroutine find_plain_strains
 

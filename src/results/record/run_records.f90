@@ -10,7 +10,7 @@ module run_records
   use extremes, only: extreme, extremes_by_face, note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
-  use law_fields, only: mean_of_elements
+  use law_fields, only: mean_of_elements, take_block
   use goal_errors, only: goal_error
   use path_errors, only: path_error
   use extreme_errors, only: forget_error, update_error
@@ -260,7 +260,16 @@ contains
     end if
     do i = 1, size(model%inelastic)
       associate (points => model%inelastic(i)%points, faces => self%damage%faces(i))
-        call self%fields(item%row)%of_block(model, now, i, values)
+        select case (item%name)
+        case ('S1_POINT') ! the values on the nodes come from those at the points
+          call take_block(model, self%stresses%plan, i, self%stresses%point_principal(1, :, :), &
+                          values)
+        case ('S3_POINT')
+          call take_block(model, self%stresses%plan, i, self%stresses%point_principal(3, :, :), &
+                          values)
+        case default
+          call self%fields(item%row)%of_block(model, now, i, values)
+        end select
         if (.not. allocated(values)) allocate (values(1, points%num_points), source=0.0_rk)
         call note_values(item%largest, values(1, :), points%x, faces%is_upstream, &
                          faces%is_downstream, now%total_time, item%wants_smallest)

@@ -2,8 +2,8 @@
 program test_tensor6
   use kinds, only: rk
   use small_matrix, only: cross_product, determinant3
-  use tensor6, only: as_matrix, principal_axes, principal_values, second_invariant, &
-                     sum_tensors, third_invariant, trace, von_mises
+  use tensor6, only: as_matrix, find_principal_values, principal_axes, principal_values, &
+                     second_invariant, sum_tensors, third_invariant, trace, von_mises
   use testing, only: check_close, repeat_chance, test_log
   implicit none
   real(rk), parameter :: roundoff = 20.0_rk*epsilon(1.0_rk) !< a few operations on the largest value
@@ -26,6 +26,9 @@ contains
     real(rk) :: found(3), axes(3, 3)
     call check_close(log, maxval(abs(principal_values(tensor) - values)), 0.0_rk, &
                      roundoff*max(maxval(abs(values)), tiny(1.0_rk)), what)
+    call find_principal_values(1, tensor, found)
+    call check_close(log, maxval(abs(found - values)), 0.0_rk, &
+                     roundoff*max(maxval(abs(values)), tiny(1.0_rk)), what//': of many')
     call principal_axes(tensor, found, axes)
     call check_close(log, axes_error(tensor, found, axes), 0.0_rk, &
                      roundoff*max(maxval(abs(values)), tiny(1.0_rk)), what//': axes')
@@ -88,11 +91,13 @@ contains
 
   !> Random axes, values that are apart, near or equal by turns: error a few units of roundoff.
   subroutine rotated_states()
+    integer, parameter :: number = 3000
     real(rk) :: axes(3, 3), values(3), matrix(3, 3), chance(3), worst, worst_axes, tensor(6)
+    real(rk) :: tensors(6, number), one_by_one(3, number), together(3, number)
     integer :: i, k
     worst = 0.0_rk
     worst_axes = 0.0_rk
-    do i = 1, 3000
+    do i = 1, number
       call random_axes(axes)
       call random_number(chance)
       values = 1.0_rk
@@ -104,10 +109,14 @@ contains
       end do
       tensor = [matrix(1, 1), matrix(2, 2), matrix(3, 3), matrix(1, 2), matrix(1, 3), matrix(2, 3)]
       worst = max(worst, maxval(abs(values - principal_values(tensor))))
+      tensors(:, i) = tensor
+      one_by_one(:, i) = principal_values(tensor)
       call principal_axes(tensor, values, axes)
       worst_axes = max(worst_axes, axes_error(tensor, values, axes))
     end do
     call check_close(log, worst, 0.0_rk, roundoff, 'random axes')
+    call find_principal_values(number, tensors, together)
+    call check_close(log, maxval(abs(together - one_by_one)), 0.0_rk, roundoff, 'of many')
     call check_close(log, worst_axes, 0.0_rk, roundoff, 'axes found')
   end subroutine rotated_states
 
