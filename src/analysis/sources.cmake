@@ -57,6 +57,7 @@ set(sources
   state/modal_errors.f90
   state/path_errors.f90
   state/path_twins.f90
+  state/renumbered_motion.f90
   state/motion_archive.f90
   state/state_archive.f90
   state/state_transfer.f90

@@ -18,6 +18,7 @@ module dynamic_step
   use start_acceleration, only: find_start
   use support_rates, only: find_support_rates
   use energy_account, only: open_account
+  use renumbered_motion, only: renumber
   use run_ledger, only: ledger
   use motion_goes_on, only: has_same_unknowns, keep_accelerations, keep_joints, unbalanced_force
   use solid_iteration, only: solid_solver
@@ -40,7 +41,7 @@ contains
     type(dam_system), intent(inout) :: system
     type(solid_solver), intent(inout) :: solids
     type(state), intent(inout) :: now !< at the start of the step
-    type(motion), intent(out) :: last !< at the end of the step before
+    type(motion), intent(out) :: last !< at the end of the step before, in unknowns of this one
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
     last = now%motion
@@ -57,6 +58,7 @@ contains
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
     call keep_joints(last, plan, system%operator%num_points, now)
+    if (now%increment == 0) call renumber(model, now%step, system%numbers, last)
     call solids%open(model, system, plan, now)
   end subroutine build_dynamic_step
 
@@ -133,7 +135,7 @@ contains
     logical :: has_changed, goes_on
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     associate (own => now%motion)
-      goes_on = has_same_unknowns(last, model, now%step, own)
+      goes_on = has_same_unknowns(last, plan, own)
       if (goes_on) then
         call resume_uplift(model, system%operator, now%joints, system%groups, costs)
       else

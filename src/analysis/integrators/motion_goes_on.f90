@@ -8,8 +8,7 @@ module motion_goes_on
   use analysis_state, only: motion, state
   use global_vectors, only: largest_entry
   use kinds, only: rk
-  use problem_definition, only: problem
-  use step_plan, only: step, step_before
+  use step_plan, only: step
   implicit none
   private
   public :: keep_joints, keep_accelerations, has_same_unknowns, unbalanced_force
@@ -32,34 +31,18 @@ contains
   end subroutine keep_joints
 
   !> Whether accelerations and forces of the step before are those of the same unknowns: of a step
-  !> with all its unknowns, no reduced model, and the same supports.
-  logical function has_same_unknowns(last, model, number, own) result(is_same)
+  !> with all its unknowns, no reduced model.
+  logical function has_same_unknowns(last, plan, own) result(is_same)
     type(motion), intent(in) :: last !< at the end of the step before
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the step
+    type(step), intent(in) :: plan
     type(motion), intent(in) :: own !< at the start of the step
     is_same = .false.
-    if (model%steps(number)%changes_stage .or. .not. allocated(last%viscous_rate)) return
+    if (plan%changes_stage .or. .not. allocated(last%viscous_rate)) return
     if (size(last%q) /= size(own%q)) return
-    if (.not. has_same_supports(model, number)) return
     is_same = are_equal(last%q, own%q)
     if (is_same) is_same = are_equal(last%v, own%v)
     if (is_same) is_same = are_equal(last%a, own%a)
   end function has_same_unknowns
-
-  !> Whether the last step before that moved the dam held the same displacements.
-  pure logical function has_same_supports(model, number) result(is_same)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    integer :: before
-    is_same = .false.
-    before = step_before(model%steps, number)
-    if (before == 0) return
-    associate (old => model%steps(before)%fixities, new => model%steps(number)%fixities)
-      if (size(old) /= size(new)) return
-      is_same = all(old%node == new%node .and. old%dof == new%dof)
-    end associate
-  end function has_same_supports
 
   !> Whether two vectors differ by round-off alone.
   logical function are_equal(x, y)

@@ -58,9 +58,10 @@ contains
     call list%add('light-solid', &
                   'times that of the heaviest solid: sudden', &
                   'A solid with next to no mass has periods far below any increment. Smooth '// &
-                  'loads move it as a solid without mass. Where a load comes at once, or '// &
-                  'supports change between two dynamic steps, a small force gives the small '// &
-                  'mass a large acceleration, and the increments do not follow it.', &
+                  'loads move it as a solid without mass. Where a load comes at once, a '// &
+                  'support with a reaction goes, or a dynamic step follows one with REDUCED, '// &
+                  'a small force gives the small mass a large acceleration, and the '// &
+                  'increments do not follow it.', &
                   'Leave *DENSITY out: a solid without density follows its forces in static '// &
                   'balance.', &
                   '*MATERIAL, NAME=ROCK; *DENSITY; 1e-6', &

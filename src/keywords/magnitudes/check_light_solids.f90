@@ -52,7 +52,7 @@ contains
         call model%cards(model%material_origin(i)%card)%warn( &
           faults, 'the density of '//now%name//', '//as_text(now%density)//', is '// &
           as_short_text(now%density/heaviest)//' times that of the heaviest solid: sudden '// &
-          'loads and supports that change give such a light solid any motion', &
+          'loads and supports that go give such a light solid any motion', &
           'no *DENSITY for a solid without mass')
       end associate
     end do

@@ -1,0 +1,109 @@
+!> Motion and forces at the end of a step in the unknowns of the next step, whose supports are
+!> others (theory.md, 7.1, "Steps in a row").
+module renumbered_motion
+  use analysis_state, only: motion
+  use constraint_elimination, only: number_step
+  use dof_numbering, only: numbering
+  use errors, only: error_type
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use step_plan, only: step_before, step_fixity
+  implicit none
+  private
+  public :: renumber
+
+  !> Difference of two coefficients that are the same.
+  real(rk), parameter :: same_coefficient = 1.0e-12_rk
+
+contains
+
+  !> Puts the motion of the step before into the order of the new unknowns. A support that has gone
+  !> leaves its reaction as a load, so that the forces of the old step stay in balance. Where other
+  !> displacements depend on others than before, nothing is left of the old motion.
+  subroutine renumber(model, number, numbers, last)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(numbering), intent(in) :: numbers !< of the step
+    type(motion), intent(inout) :: last !< at the end of the step before
+    type(numbering) :: old
+    type(motion) :: none
+    type(error_type), allocatable :: error
+    integer, allocatable :: place(:)
+    integer :: before
+    before = step_before(model%steps, number)
+    if (before == 0 .or. .not. allocated(last%viscous_rate)) return
+    if (model%steps(number)%changes_stage) return
+    if (has_same_supports(model%steps(before)%fixities, model%steps(number)%fixities)) return
+    call number_step(model%mesh, model%joints, model%guests, model%steps(before)%fixities, old, &
+                     error)
+    if (.not. allocated(error)) call match(old, numbers, place)
+    if (allocated(place)) then
+      call release_supports(old%num_free, last)
+      call take_places(place, last)
+    else
+      last = none
+    end if
+  end subroutine renumber
+
+  !> Whether two steps hold the same displacements.
+  pure logical function has_same_supports(old, new) result(is_same)
+    type(step_fixity), intent(in) :: old(:), new(:)
+    is_same = size(old) == size(new)
+    if (is_same) is_same = all(old%node == new%node .and. old%dof == new%dof)
+  end function has_same_supports
+
+  !> The old unknown of each new one; not allocated where some unknowns have no counterpart, or
+  !> displacements depend on others than before.
+  subroutine match(old, new, place)
+    type(numbering), intent(in) :: old, new
+    integer, allocatable, intent(out) :: place(:) !< (num_total)
+    integer :: k, p
+    logical :: is_same
+    if (old%num_total /= new%num_total .or. size(old%unknown) /= size(new%unknown)) return
+    allocate (place(new%num_total), source=0)
+    do p = 1, size(new%first_jump)
+      if (min(new%first_jump(p), old%first_jump(p)) == 0) cycle
+      place(new%first_jump(p):new%first_jump(p) + 2) = [(old%first_jump(p) + k, k=0, 2)]
+    end do
+    do k = 1, new%num_total
+      if (place(k) == 0) place(k) = old%unknown_of(new%node(k), new%direction(k))
+    end do
+    is_same = all(place > 0) .and. all(old%row_start == new%row_start)
+    if (is_same) is_same = all(place(new%unknown) == old%unknown) &
+                           .and. all(abs(new%coefficient - old%coefficient) <= same_coefficient)
+    if (.not. is_same) deallocate (place)
+  end subroutine match
+
+  !> Adds the reactions to the loads.
+  pure subroutine release_supports(num_free, last)
+    integer, intent(in) :: num_free !< of the old unknowns
+    type(motion), intent(inout) :: last
+    associate (held => last%external(num_free + 1:))
+      held = last%internal(num_free + 1:) + last%contact(num_free + 1:) &
+             + last%viscous(num_free + 1:) + last%inertia(num_free + 1:)
+    end associate
+    last%balanced(num_free + 1:) = last%inertia(num_free + 1:)
+  end subroutine release_supports
+
+  !> Reorders all vectors over the unknowns.
+  pure subroutine take_places(place, last)
+    integer, intent(in) :: place(:) !< (num_total)
+    type(motion), intent(inout) :: last
+    last%q = last%q(place)
+    last%v = last%v(place)
+    last%a = last%a(place)
+    last%external = last%external(place)
+    last%elastic = last%elastic(place)
+    last%internal = last%internal(place)
+    last%contact = last%contact(place)
+    last%balanced = last%balanced(place)
+    last%viscous = last%viscous(place)
+    last%viscous_rate = last%viscous_rate(place)
+    last%momentum = last%momentum(place)
+    last%inertia = last%inertia(place)
+    if (allocated(last%lost_damping)) last%lost_damping = last%lost_damping(place)
+    if (allocated(last%carried_correction)) then
+      last%carried_correction = last%carried_correction(place)
+    end if
+  end subroutine take_places
+end module renumbered_motion
