@@ -83,15 +83,15 @@ static int postorder(struct keyway_cholmod *c, cholmod_sparse *a, int m, int *or
 /* Threads beyond these do not read a factor any faster. */
 enum { most_threads = 16 };
 
-/* Chooses the parts of the factor in which threads substitute. Returns 0 for success. */
-static int plan_threads(struct keyway_cholmod *c)
+/* Chooses the parts of the factor in which threads substitute. */
+static void plan_threads(struct keyway_cholmod *c)
 {
   struct keyway_supernodes nodes;
   int num_threads = omp_in_parallel() ? 1 : omp_get_max_threads();
   if (num_threads > most_threads) num_threads = most_threads;
-  if (num_threads == 1 || !c->factor->is_super) return 0;
+  if (!c->factor->is_super) return;
   nodes = keyway_supernodes_of(c);
-  return keyway_plan_subtrees(&nodes, num_threads, &c->trees);
+  keyway_plan_subtrees(&nodes, num_threads, &c->trees);
 }
 
 /* Plans the factor. `order` lists the unknowns in the order of elimination, 0-based, of which the
@@ -119,7 +119,8 @@ int keyway_cholmod_analyse(void *handle, int n, const int *start, const int *use
   c->factor = cholmod_analyze_p(&a, order, NULL, 0, &c->common);
   c->common.postorder = 1;
   if (!c->factor) return c->common.status ? c->common.status : -1;
-  return plan_threads(c);
+  plan_threads(c);
+  return 0;
 }
 
 /* The smallest square of a pivot over the entry it came from, and its column. */

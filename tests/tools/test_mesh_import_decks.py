@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from keyway_tools.mesh_import.__main__ import main
+from keyway_tools.mesh_import.build import import_mesh
 from keyway_tools.mesh_import.grouped_mesh import MeshError, read_grouped_mesh
 
 # Three cubes in a row along x: nodes 101 to 104 at y = z = 0, elements 10, 13, 16.
@@ -60,10 +61,19 @@ def test_a_set_of_the_nodes_of_elements(tmp_path):
         ("*ELSET, ELSET=E\n** remark\n", "ELSET 'E' has no members; left out"),
         ("*NODE, NSET=N\n", "NSET 'N' has no members; left out"),
         ("*NSET, NSET=FUß\n101\n", "group 'FUß' is FUSS in the deck"),
+        (
+            "*ELEMENT, TYPE=T3D2, ELSET=BARS\n90, 101, 102\n91, 102, 103\n",
+            "group BARS: 2 cells of the kind line; left out",
+        ),
     ],
 )
 def test_what_becomes_of_a_set_is_noted(tmp_path, text, note):
     assert note in read(tmp_path, text).notes
+
+
+def test_a_set_of_nodes_without_solids_is_noted(tmp_path):
+    imported = import_mesh(read(tmp_path, "*NODE, NSET=FAR\n900, 9., 9., 9.\n"), [], {})
+    assert "set of nodes FAR: no solid has these nodes; left out" in imported.notes
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@ and cracking dams."""
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -11,6 +12,7 @@ from brick_decks import brick_deck
 from concrete_decks import Bar, paper_concrete, pull
 from keyway_tools.box_mesh import box_mesh
 from scipy.spatial.transform import Rotation
+from stopped_runs import stops_that_go_on
 from test_concrete_motion import check_energies, shaken_monolith
 
 YOUNG, DENSITY, LENGTH, SIDE = 25e9, 2400.0, 0.5, 0.1
@@ -174,6 +176,20 @@ def test_lost_damping_of_a_step_in_parts(keyway):
         whole, parts = (t[component][t["increment"] > 0] for t in tables)
         # Iterations end at 1e-11 of the forces, 300 times.
         assert parts == pytest.approx(whole, abs=1e-8 * np.abs(whole).max())
+
+
+def test_lost_damping_of_a_run_that_goes_on(program_path, tmp_path):
+    """The first step is dynamic and its supports are at rest: a checkpoint within the step has the
+    motion of the step itself, and there is no step before."""
+    start, end = "*BOUNDARY, AMPLITUDE=A\n", "*NODE PRINT"
+    text = cracking_cube(np.eye(3), 2)
+    held = text.index(start)
+    text = text[:held] + "*CLOAD, AMPLITUDE=A\nTOP, 3, 2e4\n" + text[text.index(end, held) :]
+    deck = tmp_path / "job.inp"
+    deck.write_text(text)
+
+    assert stops_that_go_on(program_path, tmp_path, deck, (60, 200)) >= 1
+    assert json.loads((tmp_path / "whole/job.json").read_text())["damage"]["DAMAGET"]["value"] > 0.1
 
 
 def damped_column(element: str, shares: tuple[tuple[float, int], ...]) -> str:

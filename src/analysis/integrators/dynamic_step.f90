@@ -58,9 +58,24 @@ contains
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
     call keep_joints(last, plan, system%operator%num_points, now)
-    if (now%increment == 0) call renumber(model, now%step, system%numbers, last)
+    if (now%increment == 0) call take_unknowns(model, system, now%step, last)
     call solids%open(model, system, plan, now)
   end subroutine build_dynamic_step
+
+  !> The motion of the step before in the unknowns of this one.
+  subroutine take_unknowns(model, system, number, last)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    integer, intent(in) :: number !< of the step
+    type(motion), intent(inout) :: last !< at the end of the step before
+    real(rk) :: passed_on(system%matrix%num_total)
+    logical :: has_joints
+    passed_on = 0.0_rk
+    has_joints = allocated(last%carried)
+    if (has_joints) has_joints = size(last%carried, 2) == system%operator%num_points
+    if (has_joints) call system%operator%add_forces(last%carried, passed_on)
+    call renumber(model, number, system%numbers, passed_on, last)
+  end subroutine take_unknowns
 
   !> Says in the log where more modes are damped than the deck names.
   subroutine note_modes(plan, system, results)

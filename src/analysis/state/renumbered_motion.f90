@@ -18,12 +18,14 @@ module renumbered_motion
 contains
 
   !> Puts the motion of the step before into the order of the new unknowns. A support that has gone
-  !> leaves its reaction as a load, so that the forces of the old step stay in balance. Where other
-  !> displacements depend on others than before, nothing is left of the old motion.
-  subroutine renumber(model, number, numbers, last)
+  !> leaves its reaction as a load, so that the forces of the old step stay in balance: joints act
+  !> by the tractions t* that they pass on. Where other displacements depend on others than before,
+  !> nothing is left of the old motion.
+  subroutine renumber(model, number, numbers, passed_on, last)
     type(problem), intent(in) :: model
     integer, intent(in) :: number !< of the step
     type(numbering), intent(in) :: numbers !< of the step
+    real(rk), intent(in) :: passed_on(:) !< (num_total) forces of the joints by t* [N]
     type(motion), intent(inout) :: last !< at the end of the step before
     type(numbering) :: old
     type(motion) :: none
@@ -36,10 +38,12 @@ contains
     if (has_same_supports(model%steps(before)%fixities, model%steps(number)%fixities)) return
     call number_step(model%mesh, model%joints, model%guests, model%steps(before)%fixities, old, &
                      error)
-    if (.not. allocated(error)) call match(old, numbers, place)
+    if (.not. allocated(error) .and. old%num_total == size(last%q)) then
+      call match(old, numbers, place)
+    end if
     if (allocated(place)) then
-      call release_supports(old%num_free, last)
       call take_places(place, last)
+      call release_supports(place > old%num_free, passed_on, last)
     else
       last = none
     end if
@@ -75,14 +79,16 @@ contains
   end subroutine match
 
   !> Adds the reactions to the loads.
-  pure subroutine release_supports(num_free, last)
-    integer, intent(in) :: num_free !< of the old unknowns
+  pure subroutine release_supports(was_held, passed_on, last)
+    logical, intent(in) :: was_held(:) !< (num_total)
+    real(rk), intent(in) :: passed_on(:) !< (num_total) [N]
     type(motion), intent(inout) :: last
-    associate (held => last%external(num_free + 1:))
-      held = last%internal(num_free + 1:) + last%contact(num_free + 1:) &
-             + last%viscous(num_free + 1:) + last%inertia(num_free + 1:)
-    end associate
-    last%balanced(num_free + 1:) = last%inertia(num_free + 1:)
+    where (was_held)
+      last%external = last%internal + passed_on + last%viscous + last%inertia
+      last%balanced = last%inertia
+    end where
+    if (.not. allocated(last%carried_correction)) return
+    where (was_held) last%carried_correction = 0.0_rk ! the motion of a support does not have it
   end subroutine release_supports
 
   !> Reorders all vectors over the unknowns.

@@ -127,19 +127,20 @@ contains
     integer, intent(in) :: n
     real(rk), intent(in) :: t(at_once, 6) !< n tensors
     real(rk), intent(out) :: values(at_once, 3), cosine(at_once) !< of n tensors
-    real(rk) :: mean, j2, j3, s1, s2, s3, radius, third, single, half
+    real(rk) :: mean, j2, j3, s1, s2, s3, radius, third, single, half, one
     integer :: i
     do i = 1, n
       mean = (t(i, 1) + t(i, 2) + t(i, 3))/3.0_rk
-      s1 = t(i, 1) - mean
-      s2 = t(i, 2) - mean
-      s3 = t(i, 3) - mean
       j2 = ((t(i, 1) - t(i, 2))**2 + (t(i, 2) - t(i, 3))**2 + (t(i, 3) - t(i, 1))**2)/6.0_rk &
            + (t(i, 4)**2 + t(i, 5)**2 + t(i, 6)**2)
-      j3 = s1*s2*s3 + 2.0_rk*t(i, 4)*t(i, 5)*t(i, 6) &
-           - s1*t(i, 6)**2 - s2*t(i, 5)**2 - s3*t(i, 4)**2
+      one = merge(1.0_rk, 0.0_rk, j2 > smallest_j2 .and. j2 < largest_j2) ! third powers overflow
+      s1 = one*(t(i, 1) - mean)
+      s2 = one*(t(i, 2) - mean)
+      s3 = one*(t(i, 3) - mean)
+      j3 = s1*s2*s3 + 2.0_rk*(one*t(i, 4))*(one*t(i, 5))*(one*t(i, 6)) &
+           - s1*(one*t(i, 6))**2 - s2*(one*t(i, 5))**2 - s3*(one*t(i, 4))**2
       radius = 2.0_rk*sqrt(min(max(j2, smallest_j2), largest_j2)/3.0_rk)
-      cosine(i) = merge(4.0_rk*j3/radius**3, 1.0_rk, j2 > smallest_j2 .and. j2 < largest_j2)
+      cosine(i) = merge(4.0_rk*j3/radius**3, 1.0_rk, one > 0.0_rk)
       third = cosine_of_third(min(abs(cosine(i)), 1.0_rk))
       single = sign(radius*third, cosine(i))
       half = sin_of_third*radius*sqrt(max(0.0_rk, 1.0_rk - third**2))

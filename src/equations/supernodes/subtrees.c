@@ -3,10 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Trees are chosen for so many threads, however many there are: sums do not depend on their number.
+ */
+enum { planned_threads = 4 };
 /* Time with trees over that of one thread, for which they are worth their sums. */
 static const double largest_share = 0.9;
 /* Values of a part of the factor that are worth waking threads up: 3 MB. */
 static const double worth_threads = 4.0e5;
+/* More trees are too small to be taken one by one. */
+static const int most_trees = 4096;
+
+/* A subtree that threads may take. */
+struct candidate {
+  double work;
+  int root;
+};
 
 /* The elimination tree while subtrees are chosen. */
 struct tree {
@@ -78,55 +89,52 @@ static int make_tree(const struct keyway_supernodes *l, struct tree *t)
 /* Whether a subtree is a range of supernodes. */
 static int is_range(const struct tree *t, int s) { return s - t->first[s] + 1 == t->count[s]; }
 
-/* The work of the busiest thread, when each takes the largest tree that is left. Trees are sorted,
- * the largest first. */
-static double busiest(const struct tree *t, int num_trees, const int *root, int num_threads,
-                      double *load)
+/* The largest tree first, trees of equal work in the order of their roots. */
+static int compare(const void *a, const void *b)
 {
-  double most = 0.0;
-  for (int i = 0; i < num_threads; i++) load[i] = 0.0;
+  const struct candidate *x = a, *y = b;
+  if (x->work > y->work) return -1;
+  if (x->work < y->work) return 1;
+  return (x->root > y->root) - (x->root < y->root);
+}
+
+/* Adds the subtrees below a supernode, or all trees, and sorts the list. */
+static void add_children(const struct tree *t, int parent, int first, int *num_trees,
+                         struct candidate *list)
+{
+  for (int s = first; s < parent; s++)
+    if (t->parent[s] == parent) list[(*num_trees)++] = (struct candidate){t->work[s], s};
+  qsort(list, (size_t)*num_trees, sizeof *list, compare);
+}
+
+/* The work of the busiest thread, when each takes the largest tree that is left. */
+static double busiest(int num_trees, const struct candidate *list)
+{
+  double most = 0.0, load[planned_threads] = {0.0};
   for (int k = 0; k < num_trees; k++) {
     int least = 0;
-    for (int i = 1; i < num_threads; i++)
+    for (int i = 1; i < planned_threads; i++)
       if (load[i] < load[least]) least = i;
-    load[least] += t->work[root[k]];
+    load[least] += list[k].work;
     if (load[least] > most) most = load[least];
   }
   return most;
 }
 
-/* Puts the root of a tree into the sorted list. */
-static void insert(const struct tree *t, int s, int *num_trees, int *root)
-{
-  int k = (*num_trees)++;
-  for (; k > 0 && t->work[root[k - 1]] < t->work[s]; k--) root[k] = root[k - 1];
-  root[k] = s;
-}
-
-/* Takes the largest tree apart, or one that is no range. Returns its root. */
-static int split(const struct tree *t, int k, int *num_trees, int *root)
-{
-  int s = root[k];
-  memmove(root + k, root + k + 1, (size_t)(*num_trees - k - 1) * sizeof *root);
-  --*num_trees;
-  for (int child = t->first[s]; child < s; child++)
-    if (t->parent[child] == s) insert(t, child, num_trees, root);
-  return s;
-}
-
-/* The next tree to be taken apart, -1 for none. */
-static int next_split(const struct tree *t, int num_trees, const int *root)
+/* The next tree to be taken apart: one that is no range of supernodes, else the largest. -1: there
+ * is none. */
+static int next_split(const struct tree *t, int num_trees, const struct candidate *list)
 {
   for (int k = 0; k < num_trees; k++)
-    if (!is_range(t, root[k])) return k;
-  return num_trees > 0 && t->count[root[0]] > 1 ? 0 : -1;
+    if (!is_range(t, list[k].root)) return k;
+  return num_trees > 0 && t->count[list[0].root] > 1 ? 0 : -1;
 }
 
-/* Takes trees apart as long as that makes the substitution faster. Returns the time over that of
- * one thread; trees are the roots that are left, is_above what is above them. */
-static double choose_roots(const struct keyway_supernodes *l, const struct tree *t,
-                           int num_threads, int *num_trees, int *root, char *is_above,
-                           double *load)
+/* Takes trees apart as long as that makes the substitution faster: twice, for the second time up to
+ * the best number of them. Returns the time over that of one thread; the trees that are left are in
+ * the list, is_above marks what is above them. */
+static double choose_trees(const struct keyway_supernodes *l, const struct tree *t,
+                           int *num_trees, struct candidate *list, char *is_above)
 {
   double total = t->work[t->num_supernodes], best = total;
   int best_splits = 0;
@@ -134,17 +142,19 @@ static double choose_roots(const struct keyway_supernodes *l, const struct tree 
     double above = 0.0;
     *num_trees = 0;
     memset(is_above, 0, (size_t)t->num_supernodes);
-    for (int s = 0; s < t->num_supernodes; s++)
-      if (t->parent[s] == t->num_supernodes) insert(t, s, num_trees, root);
+    add_children(t, t->num_supernodes, 0, num_trees, list);
     for (int splits = 0; pass == 0 || splits < best_splits; splits++) {
-      int k = next_split(t, *num_trees, root), s;
-      if (pass == 0 && (k < 0 || is_range(t, root[k]))) {
-        double time = above + busiest(t, *num_trees, root, num_threads, load);
+      int k = next_split(t, *num_trees, list), s;
+      if (pass == 0 && (k < 0 || is_range(t, list[k].root))) {
+        double time = above + busiest(*num_trees, list);
         if (time < best) best_splits = splits;
         if (time < best) best = time;
       }
-      if (k < 0 || above > best) break;
-      s = split(t, k, num_trees, root);
+      /* No other trees can take less than all that is not above, shared by all threads. */
+      if (k < 0 || (pass == 0 && above + (total - above) / planned_threads >= best)) break;
+      s = list[k].root;
+      list[k] = list[--*num_trees];
+      add_children(t, s, t->first[s], num_trees, list);
       is_above[s] = 1;
       above += own_work(l, s);
     }
@@ -175,30 +185,27 @@ static int make_room(const struct keyway_supernodes *l, const struct tree *t,
   return trees->sum && trees->place && trees->work ? 0 : -2;
 }
 
-int keyway_plan_subtrees(const struct keyway_supernodes *l, int num_threads,
-                         struct keyway_subtrees *trees)
+void keyway_plan_subtrees(const struct keyway_supernodes *l, int num_threads,
+                          struct keyway_subtrees *trees)
 {
   struct tree t;
   size_t room = (size_t)l->num_supernodes + 1;
-  double *load = malloc((size_t)num_threads * sizeof *load);
+  struct candidate *list = malloc(room * sizeof *list);
   int status = make_tree(l, &t);
   memset(trees, 0, sizeof *trees);
   trees->num_threads = num_threads;
   trees->root = malloc(room * sizeof(int));
   trees->is_above = malloc(room);
-  if (!load || !trees->root || !trees->is_above) status = -2;
-  if (status == 0) {
-    double share = choose_roots(l, &t, num_threads, &trees->num_trees, trees->root,
-                                trees->is_above, load);
-    if (share <= largest_share)
-      status = make_room(l, &t, trees);
-    else
-      trees->num_trees = 0;
+  if (!list || !trees->root || !trees->is_above) status = -2;
+  if (status == 0 && t.work[l->num_supernodes] >= worth_threads) {
+    double share = choose_trees(l, &t, &trees->num_trees, list, trees->is_above);
+    if (share > largest_share || trees->num_trees > most_trees) trees->num_trees = 0;
+    for (int k = 0; k < trees->num_trees; k++) trees->root[k] = list[k].root;
+    if (trees->num_trees > 0) status = make_room(l, &t, trees);
   }
   if (status != 0 || trees->num_trees == 0) keyway_free_subtrees(trees);
-  free(load);
+  free(list);
   free_tree(&t);
-  return status;
 }
 
 void keyway_free_subtrees(struct keyway_subtrees *trees)
@@ -221,6 +228,13 @@ static int is_worth_threads(const struct keyway_supernodes *l, enum keyway_part 
   for (int s = 0; s < l->num_supernodes && work < worth_threads; s++)
     if (keyway_is_in_part(s, part, is_upper)) work += own_work(l, s);
   return work >= worth_threads;
+}
+
+/* Whether a tree has supernodes of a part: the upper part holds all that is above a supernode. */
+static int has_part(const struct keyway_subtrees *trees, int k, enum keyway_part part,
+                    const char *is_upper)
+{
+  return part != KEYWAY_UPPER || is_upper[trees->root[k]];
 }
 
 /* Forward substitution in one tree. */
@@ -254,13 +268,15 @@ void keyway_forward_in_trees(const struct keyway_supernodes *l, enum keyway_part
     size_t own = (size_t)omp_get_thread_num();
 #pragma omp for schedule(dynamic)
     for (int k = 0; k < trees->num_trees; k++)
-      forward_in_tree(l, part, is_upper, trees, k, y, trees->work + own * longest,
-                      trees->place + own * n);
+      if (has_part(trees, k, part, is_upper))
+        forward_in_tree(l, part, is_upper, trees, k, y, trees->work + own * longest,
+                        trees->place + own * n);
   }
   for (int k = 0; k < trees->num_trees; k++) {
     int root = trees->root[k], width = width_of(l, root);
     const int *above = l->row + l->row_start[root] + width;
     const double *sum = trees->sum + trees->sum_start[k];
+    if (!has_part(trees, k, part, is_upper)) continue;
     for (int i = 0; i < length_of(l, root) - width; i++) y[above[i]] += sum[i];
   }
   for (int s = 0; s < l->num_supernodes; s++) {
@@ -282,6 +298,7 @@ void keyway_backward_in_trees(const struct keyway_supernodes *l, enum keyway_par
   if (is_worth_threads(l, part, is_upper))
   for (int k = 0; k < trees->num_trees; k++) {
     double *work = trees->work + (size_t)omp_get_thread_num() * longest;
+    if (!has_part(trees, k, part, is_upper)) continue;
     for (int s = trees->root[k]; s >= trees->first[k]; s--)
       if (keyway_is_in_part(s, part, is_upper)) keyway_backward_one(l, s, y, work);
   }

@@ -7,7 +7,7 @@
 
 struct keyway_subtrees {
   int num_trees;   /* 0: one thread does everything */
-  int num_threads; /* that the subtrees were chosen for */
+  int num_threads; /* that there is room for */
   int *root;       /* (num_trees) supernode, the largest tree first */
   int *first;      /* (num_trees) the tree holds the supernodes first to root */
   long *sum_start; /* (num_trees + 1) into `sum` */
@@ -18,10 +18,10 @@ struct keyway_subtrees {
   int longest;     /* rows of a supernode, at most */
 };
 
-/* Chooses subtrees for some threads, none where they would not make a substitution faster. Returns
- * 0 for success, also without trees. */
-int keyway_plan_subtrees(const struct keyway_supernodes *l, int num_threads,
-                         struct keyway_subtrees *trees);
+/* Chooses subtrees, and makes room for some threads. There are none where they would not make a
+ * substitution faster, for small factors, and without memory. */
+void keyway_plan_subtrees(const struct keyway_supernodes *l, int num_threads,
+                          struct keyway_subtrees *trees);
 
 void keyway_free_subtrees(struct keyway_subtrees *trees);
 

@@ -170,4 +170,6 @@ def drop_unused(grouped: GroupedMesh, joints: dict, node_sets: dict, notes: list
         kept = members[used[members]]
         if kept.size:
             mesh.node_sets[name] = place[kept]
+        else:
+            notes.append(f"set of nodes {name}: no solid has these nodes; left out")
     return mesh

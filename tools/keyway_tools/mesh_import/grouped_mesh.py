@@ -76,7 +76,7 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
     found = GroupedMesh(x, *(gather(mesh, kinds) for kinds in (CORNERS, FACES)))
     origins = names_of_groups(mesh)
     groups = groups_of_cells(mesh)
-    found.notes = notes + renamed_groups(origins)
+    found.notes = notes + renamed_groups(origins) + lost_members(groups, mesh)
     found.brick_groups = select(groups, mesh, CORNERS)
     found.face_groups = select(groups, mesh, FACES)
     found.node_groups = groups_of_points(mesh, groups)
@@ -153,6 +153,20 @@ def renamed_groups(origins: dict[str, str]) -> list[str]:
         for word, name in origins.items()
         if capitals(name.strip()) != word
     ]
+
+
+def lost_members(groups: dict[str, list[np.ndarray]], mesh: meshio.Mesh) -> list[str]:
+    """Notes on cells of groups that are no solids, faces or nodes."""
+    notes = []
+    for name, members in groups.items():
+        lost: dict[str, int] = {}
+        for block, own in zip(mesh.cells, members, strict=True):
+            if block.type not in {*CORNERS, *FACES, "vertex"} and len(own):
+                lost[block.type] = lost.get(block.type, 0) + len(own)
+        notes += [
+            f"group {name}: {n} cells of the kind {kind}; left out" for kind, n in lost.items()
+        ]
+    return notes
 
 
 def groups_of_cells(mesh: meshio.Mesh) -> dict[str, list[np.ndarray]]:
