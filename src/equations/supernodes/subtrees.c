@@ -279,12 +279,9 @@ void keyway_forward_in_trees(const struct keyway_supernodes *l, enum keyway_part
     if (!has_part(trees, k, part, is_upper)) continue;
     for (int i = 0; i < length_of(l, root) - width; i++) y[above[i]] += sum[i];
   }
-  for (int s = 0; s < l->num_supernodes; s++) {
-    const int *row = l->row + l->row_start[s];
-    if (!trees->is_above[s] || !keyway_is_in_part(s, part, is_upper)) continue;
-    keyway_forward_one(l, s, y, trees->work);
-    for (int i = width_of(l, s); i < length_of(l, s); i++) y[row[i]] += trees->work[i];
-  }
+  for (int s = 0; s < l->num_supernodes; s++)
+    if (trees->is_above[s] && keyway_is_in_part(s, part, is_upper))
+      keyway_forward_and_add(l, s, y, trees->work);
 }
 
 void keyway_backward_in_trees(const struct keyway_supernodes *l, enum keyway_part part,

@@ -71,16 +71,19 @@ void keyway_backward_one(const struct keyway_supernodes *l, int s, double *y, do
   memcpy(y + first, work, (size_t)width * sizeof *y);
 }
 
+void keyway_forward_and_add(const struct keyway_supernodes *l, int s, double *y, double *work)
+{
+  int length = l->row_start[s + 1] - l->row_start[s];
+  const int *row = l->row + l->row_start[s];
+  keyway_forward_one(l, s, y, work);
+  for (int i = l->column[s + 1] - l->column[s]; i < length; i++) y[row[i]] += work[i];
+}
+
 void keyway_substitute_forward(const struct keyway_supernodes *l, enum keyway_part part,
                                const char *is_upper, double *y, double *work)
 {
-  for (int s = 0; s < l->num_supernodes; s++) {
-    const int *row = l->row + l->row_start[s];
-    int length = l->row_start[s + 1] - l->row_start[s];
-    if (!keyway_is_in_part(s, part, is_upper)) continue;
-    keyway_forward_one(l, s, y, work);
-    for (int i = l->column[s + 1] - l->column[s]; i < length; i++) y[row[i]] += work[i];
-  }
+  for (int s = 0; s < l->num_supernodes; s++)
+    if (keyway_is_in_part(s, part, is_upper)) keyway_forward_and_add(l, s, y, work);
 }
 
 void keyway_substitute_backward(const struct keyway_supernodes *l, enum keyway_part part,

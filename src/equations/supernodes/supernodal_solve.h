@@ -29,6 +29,9 @@ int keyway_is_in_part(int s, enum keyway_part part, const char *is_upper);
  * what the other rows of the supernode get. work has room for its rows. */
 void keyway_forward_one(const struct keyway_supernodes *l, int s, double *y, double *work);
 
+/* The same; the other rows of y get their share. */
+void keyway_forward_and_add(const struct keyway_supernodes *l, int s, double *y, double *work);
+
 /* Backward substitution with the columns of one supernode. */
 void keyway_backward_one(const struct keyway_supernodes *l, int s, double *y, double *work);
 

@@ -261,12 +261,11 @@ contains
     do i = 1, size(model%inelastic)
       associate (points => model%inelastic(i)%points, faces => self%damage%faces(i))
         select case (item%name)
-        case ('S1_POINT') ! the values on the nodes come from those at the points
-          call take_block(model, self%stresses%plan, i, self%stresses%point_principal(1, :, :), &
-                          values)
-        case ('S3_POINT')
-          call take_block(model, self%stresses%plan, i, self%stresses%point_principal(3, :, :), &
-                          values)
+        case ('S1_POINT', 'S3_POINT') ! the values on the nodes come from those at the points
+          associate (principal => self%stresses%point_principal(merge(3, 1, item%wants_smallest), &
+                                                                :, :))
+            call take_block(model, self%stresses%plan, i, principal, values)
+          end associate
         case default
           call self%fields(item%row)%of_block(model, now, i, values)
         end select
