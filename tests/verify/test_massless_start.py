@@ -82,8 +82,10 @@ def sudden_weight(alpha: float) -> str:
 def test_massless_column_follows_its_block(keyway, facets):
     run = keyway(column_deck(facets, sudden_weight(0.0)))
     middle, top, bottom = (run.csv(f"node_{name}") for name in ("MIDDLE", "TOP", "BOTTOM"))
-    # Free fall is the exact start: the joint carries nothing yet. Round-off of M + eps K: 1e-9.
-    assert bottom["A3"][0] == pytest.approx(-GRAVITY, rel=1e-9)
+    # Free fall is the exact start: the joint carries nothing yet. The block itself oscillates with
+    # sqrt(12 E/rho)/h = 7070/s, 14 over the increment, of which the start has a part: motions above
+    # 30 start as those without mass do (theory.md, 7.1).
+    assert bottom["A3"][0] == pytest.approx(-GRAVITY, rel=1e-4)
     largest = abs(bottom["A3"]).max()
     assert len(top["A3"]) == 51  # the start and 50 increments
     # The residual may be 1e-6 of the forces; the trapezoidal rule keeps what the start has wrong.
@@ -123,6 +125,67 @@ def test_steps_in_a_row(keyway):
     size = np.abs(whole["U1"]).max()
     for name in ("U1", "U2", "U3"):
         assert parts[name] == pytest.approx(whole[name], abs=1e-3 * size)
+
+
+PARTLY = """*HEADING
+two bricks of rock without mass, tied to two of a dam that ends a little beyond the first
+*NODE
+{nodes}*ELEMENT, TYPE=C3D8I, ELSET=ROCK
+1, 1, 2, 5, 4, 7, 8, 11, 10
+2, 2, 3, 6, 5, 8, 9, 12, 11
+*ELEMENT, TYPE=C3D8I, ELSET=DAM
+3, 13, 14, 17, 16, 19, 20, 23, 22
+4, 14, 15, 18, 17, 20, 21, 24, 23
+*MATERIAL, NAME=STONE
+*DAMPING, BETA=1e-3
+*ELASTIC
+30e9, 0.2
+*SOLID SECTION, ELSET=ROCK, MATERIAL=STONE
+*MATERIAL, NAME=CONCRETE
+*DENSITY
+2400.
+*ELASTIC
+25e9, 0.2
+*SOLID SECTION, ELSET=DAM, MATERIAL=CONCRETE
+*SURFACE, NAME=SOLE
+DAM, S1
+*SURFACE, NAME=GROUND
+ROCK, S2
+*TIE, NAME=FOOT
+SOLE, GROUND
+*BOUNDARY
+1, 1, 3
+2, 1, 3
+3, 1, 3
+4, 1, 3
+5, 1, 3
+6, 1, 3
+*NSET, NSET=EDGE
+9, 12
+"""
+
+
+def partly_covered(cover: float) -> str:
+    levels = [(-1.0, [0.0, 1.0, 2.0]), (0.0, [0.0, 1.0, 2.0])]
+    levels += [(z, [0.0, 0.5 * (1.0 + cover), 1.0 + cover]) for z in (0.0, 1.0)]
+    places = [(x, y, z) for z, row in levels for y in (0.0, 1.0) for x in row]
+    return PARTLY.format(
+        nodes="".join(f"{i}, {x!r}, {y!r}, {z!r}\n" for i, (x, y, z) in enumerate(places, start=1))
+    )
+
+
+@pytest.mark.parametrize("cover", [0.0, 0.02, 0.05, 0.2])
+@pytest.mark.parametrize("dt", ["0.01", "0.0001"])
+def test_rock_that_a_tie_covers_in_part(keyway, cover, dt):
+    """A tie that covers 2 % of a facet leaves motions of the rock with nearly no mass, whose
+    periods are far below any increment. A force that comes at once on the damped rock moves it by
+    no more than twice what it does at rest; it was 1e6 times as much."""
+    force = "*CLOAD\nEDGE, 3, -2e4\n*NODE PRINT, NSET=EDGE\nU, A\n"
+    rest = keyway(partly_covered(cover) + f"*STEP\n*STATIC\n{force}*END STEP\n", name="rest")
+    step = f"*STEP, INC=1000\n*DYNAMIC, DIRECT\n{dt}, 0.03\n{force}*END STEP\n"
+    moved = keyway(partly_covered(cover) + step, name="moved")
+    still = np.abs(rest.csv("node_EDGE")["U3"]).max()
+    assert np.abs(moved.csv("node_EDGE")["U3"]).max() < 2.0 * still
 
 
 def fine(*arguments, **options) -> str:

@@ -20,7 +20,7 @@ module massless_acceleration
   use initial_acceleration, only: find_massive
   implicit none
   private
-  public :: find_constrained_acceleration, find_weight
+  public :: find_constrained_acceleration, find_weight, leave_out_fast
 
   !> eps times the mean square frequency of the unknowns with mass. Measured on an arch dam on a
   !> perimetral joint, 800 times as stiff as the elements: 1e-3 takes 43 iterations, 1e-5 takes 6,
@@ -33,6 +33,8 @@ module massless_acceleration
   real(rk), parameter :: tolerance = 1.0e-12_rk, largest_correction = 1.0e-6_rk
   !> Powers of P^-1 eps K: each takes a factor of some 1e-5 of what has mass.
   integer, parameter :: num_powers = 3
+  !> The filter of motions that are too fast: powers of F, and of 1 - F^2.
+  integer, parameter :: order_of_filter = 2, num_filters = 4
 
 contains
 
@@ -92,6 +94,42 @@ contains
     call multiply(matrix, sum_of_both - mass, moved, product)
     force = force - product
   end subroutine take_static_part
+
+  !> Takes the part of motions whose frequencies w are high from an acceleration:
+  !>
+  !>   a <- (1 - (1 - F^2)^4) a,   F = (M + tau K)^-1 M
+  !>
+  !> Slow motions lose (2 tau w^2)^4 of their part, fast ones keep 4/(tau w^2)^2. A facet that a tie
+  !> covers in part has motions with nearly no mass. N^T K a = 0 still holds.
+  subroutine leave_out_fast(matrix, mass, tau, stiffness, a, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:) !< values of M
+    real(rk), intent(in) :: tau !< [s2]
+    real(rk), intent(in) :: stiffness(:) !< values of K, closed joints in it
+    real(rk), intent(inout) :: a(:) !< (num_total) zero on prescribed unknowns [m/s2]
+    type(error_type), allocatable, intent(out) :: error
+    class(equation_solver), allocatable :: solver
+    real(rk), dimension(size(a)) :: fast, slow, product
+    real(rk) :: x(matrix%num_free, 1)
+    integer :: i, k
+    call make_solver(symmetric_solver, solver, error, matrix%is_shared)
+    if (.not. allocated(error)) call solver%analyse(matrix, error)
+    if (.not. allocated(error)) call solver%factorise(matrix, mass + tau*stiffness, error)
+    if (allocated(error)) return
+    fast = a
+    do i = 1, num_filters
+      slow = fast
+      do k = 1, order_of_filter
+        call multiply(matrix, mass, slow, product)
+        x(:, 1) = product(:matrix%num_free)
+        call solver%solve(x, error)
+        if (allocated(error)) return
+        slow(:matrix%num_free) = x(:, 1)
+      end do
+      fast = fast - slow
+    end do
+    a = a - fast
+  end subroutine leave_out_fast
 
   !> eps: a share of mass over stiffness, summed over the unknowns with mass; 0 without any mass.
   subroutine find_weight(matrix, mass, stiffness, eps)

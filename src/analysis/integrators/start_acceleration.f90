@@ -9,7 +9,7 @@ module start_acceleration
   use joint_iteration, only: closed_tangent
   use step_system, only: dam_system
   use initial_acceleration, only: find_acceleration
-  use massless_acceleration, only: find_constrained_acceleration, find_weight
+  use massless_acceleration, only: find_constrained_acceleration, find_weight, leave_out_fast
   use massless_solids, only: has_massless
   implicit none
   private
@@ -22,20 +22,25 @@ module start_acceleration
   !> massless parts leaves round-off that falls with the square of the share; the iteration grows.
   real(rk), parameter :: growth = 10.0_rk
   integer, parameter :: most_trials = 4
+  !> Circular frequency times increment above which motions start as those without mass do. A motion
+  !> whose period is two increments has pi.
+  real(rk), parameter :: fastest_motion = 30.0_rk
 
 contains
 
   !> Acceleration of all unknowns under the forces r. Open points of joints hold nothing; where a
   !> massless part has no other hold, all points are taken as closed, as they are in K_eff.
-  subroutine find_start(model, system, joints, load, r, a, error)
+  subroutine find_start(model, system, joints, dt, load, r, a, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(joint_state), intent(in) :: joints(:) !< at the start of the step
+    real(rk), intent(in) :: dt !< first increment [s]
     real(rk), intent(in) :: load(:) !< (num_total) part of r that sets the tolerance [N]
     real(rk), intent(in) :: r(:) !< (num_total) [N]
     real(rk), intent(out) :: a(:) !< (num_total) [m/s2]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: values(:)
+    real(rk), allocatable :: stiffness(:)
+    real(rk) :: eps
     logical :: is_definite, leaves_open
     integer :: trial, worst
     is_definite = .false.
@@ -45,20 +50,27 @@ contains
     if (is_definite) return
     a = 0.0_rk
     if (is_balanced(system%matrix%num_free, load, r)) return
+    call find_weight(system%matrix, system%mass, system%stiffness, eps)
+    if (.not. eps > 0.0_rk) return ! no mass anywhere
     leaves_open = .true.
     do
+      call add_closed_joints(model, system, joints, leaves_open, stiffness)
       do trial = 1, most_trials
-        call add_small_stiffness(model, system, joints, leaves_open, growth**(trial - 1), values)
-        if (.not. allocated(values)) return ! no mass anywhere
-        call find_constrained_acceleration(system%matrix, system%mass, values, load, r, a, worst, &
+        call find_constrained_acceleration(system%matrix, system%mass, system%mass &
+                                           + growth**(trial - 1)*eps*stiffness, load, r, a, worst, &
                                            error)
-        if (is_final(worst, error)) return
+        if (is_final(worst, error)) exit
         if (allocated(error)) exit ! a part is free, whatever the share
       end do
+      if (is_final(worst, error)) exit
       if (.not. leaves_open) exit
       leaves_open = .false.
     end do
-    if (worst > 0) call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
+    if (worst > 0) then
+      call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
+    else if (.not. allocated(error)) then
+      call leave_out_fast(system%matrix, system%mass, (dt/fastest_motion)**2, stiffness, a, error)
+    end if
   end subroutine find_start
 
   !> Whether other joints would not help: an acceleration is found, or the system has failed. A
@@ -98,19 +110,15 @@ contains
     end if
   end subroutine name_place
 
-  !> Values of M + eps K with the joints in K; not allocated where nothing has mass.
-  subroutine add_small_stiffness(model, system, joints, leaves_open, factor, values)
+  !> Values of K with the joints.
+  subroutine add_closed_joints(model, system, joints, leaves_open, stiffness)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(joint_state), intent(in) :: joints(:)
     logical, intent(in) :: leaves_open !< open points have no stiffness
-    real(rk), intent(in) :: factor !< of the least eps
-    real(rk), allocatable, intent(out) :: values(:)
-    real(rk), allocatable :: k(:, :), stiffness(:)
-    real(rk) :: eps
+    real(rk), allocatable, intent(out) :: stiffness(:)
+    real(rk), allocatable :: k(:, :)
     integer :: j
-    call find_weight(system%matrix, system%mass, system%stiffness, eps)
-    if (.not. eps > 0.0_rk) return
     call reference_stiffness(model%joints, system%operator, k)
     do j = 1, merge(size(joints), 0, leaves_open)
       associate (first => system%operator%first_point(j), &
@@ -120,6 +128,5 @@ contains
     end do
     stiffness = system%stiffness
     call system%operator%add_stiffness(closed_tangent(k), system%matrix, stiffness)
-    values = system%mass + factor*eps*stiffness
-  end subroutine add_small_stiffness
+  end subroutine add_closed_joints
 end module start_acceleration
