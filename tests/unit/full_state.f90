@@ -22,8 +22,7 @@ module full_state
 
 contains
 
-  !> Three nodes, four unknowns, two joints of two points, one block of five points, a guest without
-  !> history and one whose history is that of points.
+  !> Three nodes, four unknowns, two joints of two points, five points of solids, guests.
   subroutine make_full_state(now)
     type(state), allocatable, intent(out) :: now
     type(point_state) :: points
@@ -208,9 +207,9 @@ contains
     integer, intent(inout) :: n
     allocate (own%q(4), own%v(4), own%a(4), own%external(4), own%elastic(4), own%internal(4), &
               own%contact(4), own%balanced(4), own%viscous(4), own%viscous_rate(4), &
-              own%lost_damping(4), own%correction(4), own%carried_correction(4), &
-              own%momentum(4), own%inertia(4), own%carried(3, 4), &
-              own%jump_rate(3, 4), own%slope(4), own%bend(4), own%release(4), own%thermal(4))
+              own%lost_damping(4), own%correction(4), own%carried_correction(4), own%slope(4), &
+              own%momentum(4), own%inertia(4), own%carried(3, 4), own%jump_rate(3, 4), &
+              own%bend(4), own%release(4), own%thermal(4))
     call fill(own%q, n)
     call fill(own%v, n)
     call fill(own%a, n)
@@ -226,6 +225,7 @@ contains
     call fill(own%carried_correction, n)
     call fill(own%momentum, n)
     call fill(own%inertia, n)
+    call fill(own%acceleration_ratio, n)
     call fill(own%slope, n)
     call fill(own%bend, n)
     call fill(own%release, n)

@@ -230,6 +230,7 @@ contains
     call compare(log, what//'carried_correction', a%carried_correction, b%carried_correction)
     call compare(log, what//'momentum', a%momentum, b%momentum)
     call compare(log, what//'inertia', a%inertia, b%inertia)
+    call compare(log, what//'acceleration_ratio', a%acceleration_ratio, b%acceleration_ratio)
     call compare(log, what//'slope', a%slope, b%slope)
     call compare(log, what//'bend', a%bend, b%bend)
     call compare(log, what//'release', a%release, b%release)

@@ -86,9 +86,23 @@ contains
         task%velocity = old%v + (1.0_rk - scheme%gamma)*scheme%dt*old%a + scheme%velocity_of_x &
                         *(moved - scheme%dt*old%v - scheme%dt**2*(0.5_rk - scheme%beta)*old%a)
         if (allocated(task%support_v)) task%velocity(n + 1:) = task%support_v(n + 1:)
+        task%predicted = predict(scheme, old, n)
       end if
     end associate
   end subroutine pose_task
+
+  !> Newmark's displacements (7.1) of an increment at whose end the acceleration has changed as in
+  !> the increment before. Where it is smooth, it goes on; where it has changed its sign, it stops.
+  pure function predict(scheme, old, n) result(x)
+    type(hht), intent(in) :: scheme
+    type(motion), intent(in) :: old
+    integer, intent(in) :: n !< free unknowns
+    real(rk) :: x(n) !< [m]
+    associate (ratio => min(1.0_rk, max(-1.0_rk, old%acceleration_ratio)))
+      x = scheme%dt*old%v(:n) &
+          + scheme%dt**2*(0.5_rk - scheme%beta*(1.0_rk - ratio))*old%a(:n)
+    end associate
+  end function predict
 
   !> Rates of the supports at the end, and forces by what Newmark's formulas make of them beyond.
   subroutine set_support_rates(model, system, scheme, when, old, moved, task)
@@ -167,6 +181,7 @@ contains
                n => system%matrix%num_free)
       new%q = task%start + task%x
       call newmark_rates(scheme, old, new%q - old%q, new%v, new%a)
+      if (solids%has_inelastic()) new%acceleration_ratio = ratio_of(old%a(:n), new%a(:n))
       if (allocated(task%support_a)) new%a(n + 1:) = task%support_a(n + 1:)
       call multiply(system%mass_pattern, system%mass_entries, new%a, new%inertia)
       new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia
@@ -180,6 +195,12 @@ contains
     call carry_correction(scheme, before%motion, after%motion)
     call add_joints(system, scheme, before, after)
   end subroutine correct
+
+  !> The factor with which x comes nearest to y, by least squares.
+  pure real(rk) function ratio_of(x, y)
+    real(rk), intent(in) :: x(:), y(:) !< of one size
+    ratio_of = dot_product(x, y)/max(dot_product(x, x), tiny(1.0_rk))
+  end function ratio_of
 
   !> Velocities of supports, momentum and damping by what they are beyond the sum of accelerations.
   subroutine move_supports(system, scheme, v, old, new)

@@ -55,6 +55,7 @@ contains
     type(motion), intent(in) :: last !< at the end of the step before
     type(motion), intent(inout) :: own !< at the start of the step
     if (allocated(last%carried_correction)) own%carried_correction = last%carried_correction
+    own%acceleration_ratio = last%acceleration_ratio
   end subroutine keep_accelerations
 
   !> Forces that the inertia balances [N], joints by their laws.

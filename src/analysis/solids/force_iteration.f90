@@ -60,7 +60,7 @@ contains
   end subroutine iterate_on_forces
 
   !> The first guess of s, with the last matrix. In a dynamic step where laws have an initial stress
-  !> it is that of displacements that go on with their velocity: 10 % fewer iterations.
+  !> it is that of a motion that goes on.
   subroutine start_iteration(self, model, system, before, after, now)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -83,8 +83,8 @@ contains
     now%task%x = 0.0_rk
     call self%matrix%multiply_lost(system%matrix, now%task%start - before%motion%q, product)
     now%guess = before%motion%elastic(:n) - before%motion%internal(:n) + product(:n)
-    if (allocated(now%task%velocity) .and. any(abs(now%guess) > 0.0_rk)) then
-      now%task%x(:n) = self%time%size*before%motion%v(:n)
+    if (allocated(now%task%predicted) .and. any(abs(now%guess) > 0.0_rk)) then
+      now%task%x(:n) = now%task%predicted
       call evaluate(self, model, system, now%task, before, after)
       call self%matrix%multiply_lost(system%matrix, now%task%x, product)
       now%guess = self%excess(:n) - product(:n)

@@ -16,6 +16,7 @@ module increment_balance
     real(rk), allocatable :: start(:) !< (num_total) u at x = 0, supports in place [m]
     real(rk), allocatable :: velocity(:) !< (num_total) at x = 0; dynamic steps only [m/s]
     real(rk) :: velocity_of_x = 0.0_rk !< dv/dx [1/s]
+    real(rk), allocatable :: predicted(:) !< (free unknowns) x of a motion that goes on [m]
     !> (num_total) rates of prescribed unknowns at the end; dynamic steps whose supports follow an
     !> amplitude only [m/s], [m/s2]
     real(rk), allocatable :: support_v(:), support_a(:)

@@ -119,6 +119,8 @@ module analysis_state
     !> end of the increment carries it [N]; of solids with a free energy in dynamic steps only
     real(rk), allocatable :: correction(:), carried_correction(:)
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
+    !> Least-squares factor from the acceleration before the last increment to that after it
+    real(rk) :: acceleration_ratio = 0.0_rk
     !> (num_total) first [m/s] and second [m/s2] divided difference of q over the last increments;
     !> with *CONTROLS, ACCURACY only
     real(rk), allocatable :: slope(:), bend(:)

@@ -5,6 +5,11 @@
 
 _Static_assert(sizeof(idx_t) == sizeof(int), "METIS must be built with 32-bit indices");
 
+/* The larger side of a separator may have this many thousandths more than half of the graph. With
+ * METIS's own 200 separators are larger: dams are long, and have few places that are narrow
+ * (docs/performance.md, "Order of elimination"). */
+enum { unbalance = 400 };
+
 /* Order of elimination of a graph (0-based adjacency without loops); order[new] = old.
  * Returns 0 for success. */
 int keyway_nested_dissection(int n, int *start, int *neighbour, int *weight, int *order)
@@ -15,6 +20,7 @@ int keyway_nested_dissection(int n, int *start, int *neighbour, int *weight, int
   if (!place) return 1;
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
+  options[METIS_OPTION_UFACTOR] = unbalance;
   status = METIS_NodeND(&n, start, neighbour, weight, options, order, place);
   free(place);
   return status == METIS_OK ? 0 : 1;
