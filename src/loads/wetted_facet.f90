@@ -28,6 +28,9 @@ module wetted_facet
   end type wet_facet
 
   integer, parameter :: most_corners = 6 !< of a triangle cut twice, plus one
+  !> Twice the area of a triangle over the square of the facet's size: below, as in a facet that has
+  !> collapsed to a line, it is round-off.
+  real(rk), parameter :: round_off = 1.0e-14_rk
 
 contains
 
@@ -118,7 +121,7 @@ contains
     real(rk) :: depth(3), area(3), share, cut(3)
     integer :: low, high, middle
     area = cross_product(corner(:, 2) - corner(:, 1), corner(:, 3) - corner(:, 1))
-    if (norm2(area) <= tiny(share)) return
+    if (norm2(area) <= round_off*maxval(norm2(x - spread(x(:, 1), 2, 4), 1))**2) return
     depth = water%level - corner(water%up, :)
     low = minloc(depth, 1)
     high = maxloc(depth, 1)

@@ -194,3 +194,24 @@ def test_an_impact_has_no_estimate(keyway):
     assert "impacts" in found["not_known"]
     assert "estimated_error" not in found
     assert any("ACCURACY does not bound" in text for text in run.json["warnings"])
+
+
+def test_increments_do_not_step_over_a_temperature(keyway):
+    """A pulse of temperature of 20 ms on a column that is held: increments are no longer than the
+    spacing of its history, given as an amplitude or as the rows of a table."""
+    deck = column(1, "burst", FIRST, "*CONTROLS, ACCURACY=0.5\n")
+    deck = deck.replace("*ELASTIC", "*EXPANSION\n1e-5\n*ELASTIC")
+    deck = deck.replace(
+        "*BOUNDARY\nALL, 1, 2\nBASE, 3, 3\n",
+        "*AMPLITUDE, NAME=HEAT\n0., 0., 0.50, 0., 0.51, 1., 0.52, 0., 24., 0.\n"
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 10.\n"
+        "*BOUNDARY\nALL, 1, 2\nBASE, 3, 3\n",
+    )
+    heated = deck.replace(
+        "*NODE PRINT, NSET=TOP\nU\n",
+        "*TEMPERATURE, AMPLITUDE=HEAT\nALL, 40.\n*NODE PRINT, NSET=TOP\nU, TEMP\n",
+    )
+    assert heated.count("*TEMPERATURE, AMPLITUDE") == 1
+    table = keyway(heated, name="heated").csv("node_TOP")
+    assert np.diff(table["time"]).max() < 0.0101
+    assert table["TEMP"].max() > 30.0

@@ -1,7 +1,7 @@
 !> *CONTROLS, ACCURACY at the end of its step: where it has no meaning, and between which sizes
 !> increments may vary.
 module check_accuracy
-  use amplitudes, only: spacing_of
+  use amplitudes, only: spacing_of, spacing_of_times
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
@@ -82,7 +82,7 @@ contains
     end associate
   end function is_given
 
-  !> The shortest sampling interval of the amplitudes of the step.
+  !> The shortest sampling interval of the amplitudes and temperatures of the step.
   pure real(rk) function shortest_sample(model) result(shortest)
     type(draft), intent(in) :: model
     type(step_load), allocatable :: loads(:)
@@ -92,6 +92,14 @@ contains
     loads = model%active_loads%loads_of_step()
     is_used = model%supports%follows(size(is_used)) .or. model%point_forces%follows(size(is_used))
     is_used(pack(loads%amplitude, loads%amplitude > 0)) = .true.
+    if (allocated(model%now%heats)) then
+      do i = 1, size(model%now%heats)
+        associate (rule => model%now%heats(i))
+          if (rule%amplitude > 0) is_used(rule%amplitude) = .true.
+          shortest = min(shortest, spacing_of_times(rule%time))
+        end associate
+      end do
+    end if
     do i = 1, size(is_used)
       if (is_used(i)) shortest = min(shortest, spacing_of(model%problem%amplitudes(i)))
     end do

@@ -3,7 +3,7 @@ module amplitudes
   use kinds, only: rk
   implicit none
   private
-  public :: amplitude, amplitude_at, slope_at, spacing_of, one_g
+  public :: amplitude, amplitude_at, slope_at, spacing_of, spacing_of_times, one_g
 
   real(rk), parameter :: one_g = 9.81_rk !< unit of records of ground motion [m/s2]
 
@@ -66,9 +66,15 @@ contains
   !> points.
   pure real(rk) function spacing_of(history) result(spacing)
     type(amplitude), intent(in) :: history
-    integer :: n
-    n = size(history%time)
-    spacing = 0.5_rk*huge(1.0_rk) ! the caller adds round-off
-    if (n > 2) spacing = 0.5_rk*minval(history%time(3:) - history%time(:n - 2))
+    spacing = spacing_of_times(history%time)
   end function spacing_of
+
+  !> The same of the rows of a table.
+  pure real(rk) function spacing_of_times(time) result(spacing)
+    real(rk), intent(in) :: time(:) !< ascending [s]
+    integer :: n
+    n = size(time)
+    spacing = 0.5_rk*huge(1.0_rk) ! the caller adds round-off
+    if (n > 2) spacing = 0.5_rk*minval(time(3:) - time(:n - 2))
+  end function spacing_of_times
 end module amplitudes

@@ -1,7 +1,7 @@
 !> Joints in the results: opening, slip and pressure at the points, opening on the nodes.
 module joint_readings
   use kinds, only: rk
-  use joint_law, only: joint_state
+  use joint_law, only: joint_state, phase_absent
   use joint_opening, only: opening_of
   use joint_points, only: dam_joint
   use problem_definition, only: problem
@@ -129,6 +129,13 @@ contains
     opening = max(0.0_rk, opening)
     slip = hypot(now%slip(1, :), now%slip(2, :))
     pressure = max(0.0_rk, -now%traction(1, :))
+    if (allocated(now%phase)) then
+      where (now%phase == phase_absent)
+        opening = 0.0_rk
+        slip = 0.0_rk
+        pressure = 0.0_rk
+      end where
+    end if
     call note(record%opening, opening)
     call note(record%slip, slip)
     call note(record%pressure, pressure)

@@ -12,6 +12,7 @@ program test_wetted_facet
   call diamond_on_its_corner(log)
   call triangle(log)
   call dry_and_level(log)
+  call collapsed(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -135,4 +136,25 @@ contains
     call integrate_wet_part(x, water_body(level=4.0_rk), wet)
     call check_close(log, sum(wet%root), 2.0_rk, 1.0e-14_rk, 'floor')
   end subroutine dry_and_level
+
+  !> A facet that has collapsed to a line, as a face of a wedge may, takes no load.
+  subroutine collapsed(log)
+    type(test_log), intent(inout) :: log
+    type(wet_facet) :: wet
+    real(rk) :: a(3), b(3), x(3, 4), largest
+    integer :: i
+    a = [0.1_rk, 0.37_rk, 3.0_rk]
+    b = [1.3_rk, 0.2_rk, 3.37_rk]
+    largest = 0.0_rk
+    do i = 1, 60
+      x = reshape([a, b, b, a], [3, 4])
+      call integrate_wet_part(x, water_body(level=2.97_rk + 0.0071_rk*i), wet)
+      largest = max(largest, maxval(abs(wet%head)), maxval(abs(wet%area)), maxval(abs(wet%root)))
+      x = reshape([a, a, b, b], [3, 4])
+      call integrate_wet_part(x, water_body(level=2.97_rk + 0.0071_rk*i, bed=3.1_rk), wet)
+      largest = max(largest, maxval(abs(wet%head)), maxval(abs(wet%area)), maxval(abs(wet%root)))
+      if (.not. largest <= 1.0_rk) exit ! not a number
+    end do
+    call check_close(log, largest, 0.0_rk, 1.0e-15_rk, 'nothing on a line')
+  end subroutine collapsed
 end program test_wetted_facet
