@@ -66,8 +66,10 @@ static int postorder(struct keyway_cholmod *c, cholmod_sparse *a, int m, int *or
 {
   int n = (int)a->nrow, k, used = 0;
   int *work = malloc(6 * (size_t)n * sizeof *work);
-  int *post = work + n, *old = work + 5 * (size_t)n;
+  int *post, *old;
   if (!work) return -1;
+  post = work + n;
+  old = work + 5 * (size_t)n;
   if (!cholmod_analyze_ordering(a, CHOLMOD_GIVEN, order, NULL, 0, work, post, work + 2 * (size_t)n,
                                 work + 3 * (size_t)n, work + 4 * (size_t)n, &c->common)) {
     free(work);

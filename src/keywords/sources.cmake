@@ -28,6 +28,7 @@ set(sources
   contact/keywords_contact_law.f90
   contact/keywords_contact_pair.f90
   deck_echo.f90
+  draft/base_motion_cards.f90
   draft/card_match.f90
   draft/enter_load.f90
   draft/equation_lists.f90

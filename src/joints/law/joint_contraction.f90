@@ -72,7 +72,8 @@ contains
       call this%fault_parameter(faults, 'TENSILE STRENGTH', 'a joint with a GAP has no strength', &
                                 'GAP or TENSILE STRENGTH, not both')
     end if
-    if (this%has('KN') .and. this%has('THICKNESS')) then
+    if (this%has('KN') .and. this%has('THICKNESS') &
+        .and. (this%has('KT') .or. self%penetration <= 0.0_rk)) then
       call this%warn(faults, 'THICKNESS has no effect: KN is given')
     end if
   end subroutine read_card

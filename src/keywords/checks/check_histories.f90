@@ -7,6 +7,7 @@ module check_histories
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
+  use base_motion_cards, only: is_acceleration
   use model_draft, only: draft
   use named_things, only: find_amplitude
   use step_control, only: increment_control, start_control
@@ -61,7 +62,8 @@ contains
       call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
       if (view%amplitude /= a .or. view%step /= step(i)) call look_at(model, step(i), a, view)
       if (view%is_seen) call warn_of_increments(model%cards(i), model, view, coarse, faults)
-      if (.not. is_keyword(model%cards(i), 'BASE MOTION')) then
+      if (.not. (is_keyword(model%cards(i), 'BASE MOTION') .or. &
+                 is_acceleration(model%cards(i)))) then
         call warn_of_unit(model%cards(i), model, a, faults)
       end if
     end do

@@ -10,6 +10,7 @@ module finish_equations
   use guest_list, only: ties_of
   use guest_type, only: guest
   use kinds, only: rk
+  use base_motion_cards, only: directions_of_motion
   use model_draft, only: add_guest, draft
   use named_things, only: nodes_at
   use node_dofs, only: num_directions, zero_vectors
@@ -193,25 +194,37 @@ contains
   subroutine refuse_base_motion(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: total
-    integer :: c, k, direction
+    integer :: c, direction
+    logical :: moves(num_directions)
     do c = 1, size(model%cards)
-      if (.not. is_keyword(model%cards(c), 'BASE MOTION')) cycle
-      direction = model%cards(c)%integer('DOF')
-      do k = 1, model%equations%num
-        associate (first => model%equations%first(k), last => model%equations%first(k + 1) - 1)
-          associate (coefficient => model%equations%coefficient(first:last))
-            total = sum(coefficient, mask=model%equations%direction(first:last) == direction)
-            if (abs(total) <= round_off*maxval(abs(coefficient))) cycle
-          end associate
-        end associate
-        call fault(model, k, 'a motion of the base along '//'xyz' (direction:direction)// &
-                   ' breaks the equation', 'coefficients of this direction that add up to zero', &
-                   faults, model%cards(c)%place())
-        return
+      moves = directions_of_motion(model%cards(c))
+      do direction = 1, num_directions
+        if (moves(direction)) call refuse_motion(model, c, direction, faults)
+        if (faults%has_errors()) return
       end do
     end do
   end subroutine refuse_base_motion
+
+  !> Refuses the first equation that a motion of the base in a direction breaks.
+  subroutine refuse_motion(model, number, direction, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: number, direction !< of the card of the motion
+    type(diagnostic_list), intent(inout) :: faults
+    real(rk) :: total
+    integer :: k
+    do k = 1, model%equations%num
+      associate (first => model%equations%first(k), last => model%equations%first(k + 1) - 1)
+        associate (coefficient => model%equations%coefficient(first:last))
+          total = sum(coefficient, mask=model%equations%direction(first:last) == direction)
+          if (abs(total) <= round_off*maxval(abs(coefficient))) cycle
+        end associate
+      end associate
+      call fault(model, k, 'a motion of the base along '//'xyz' (direction:direction)// &
+                 ' breaks the equation', 'coefficients of this direction that add up to zero', &
+                 faults, model%cards(number)%place())
+      return
+    end do
+  end subroutine refuse_motion
 
   !> Displacements that depend on each other in a circle.
   subroutine refuse_circles(model, owner, rows, faults)

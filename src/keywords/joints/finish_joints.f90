@@ -11,7 +11,7 @@ module finish_joints
   use errors, only: error_type
   use facet_segments, only: find_segments, leave_bare
   use guest_list, only: ties_of
-  use joint_law, only: solid_behind, traction_law
+  use joint_law, only: joint_state, solid_behind, traction_law
   use joint_points, only: dam_joint
   use kinds, only: rk
   use model_draft, only: draft, law_of_joint
@@ -139,6 +139,23 @@ contains
     end associate
   end subroutine build_from_elements
 
+  !> Points whose faces are apart at the start do not get the strength of their law.
+  subroutine warn_of_lost_strength(place, law, clearance, faults)
+    type(card), intent(in) :: place
+    class(traction_law), intent(in) :: law
+    real(rk), intent(in) :: clearance(:) !< (points) [m]
+    type(diagnostic_list), intent(inout) :: faults
+    type(joint_state) :: closed, apart
+    integer :: lost
+    call law%start_state(0.0_rk*clearance, closed)
+    call law%start_state(clearance, apart)
+    lost = count(apart%is_broken .and. .not. closed%is_broken)
+    if (lost == 0) return
+    call place%warn(faults, as_text(lost)//' of '//as_text(size(clearance))//' points have no '// &
+                    'strength: their faces are apart at the start (CLEARANCE=MEASURED)', &
+                    'CLEARANCE=NONE where the faces are bonded')
+  end subroutine warn_of_lost_strength
+
   !> A joint between two surfaces.
   subroutine build_from_surfaces(number, model, law, taken, faults, new)
     integer, intent(in) :: number
@@ -173,7 +190,10 @@ contains
       else
         call lay_gauss_points(mesh%x, slave, master, segments, request%is_measured, new)
       end if
-      if (request%is_measured) call set_clearance(request, mesh%x, new)
+      if (request%is_measured) then
+        call set_clearance(request, mesh%x, new)
+        call warn_of_lost_strength(place, law, new%clearance, faults)
+      end if
       if (new%num_points == 0 .and. segments%num_segments > 0) then
         call place%fault_at(faults, line, 1, 'the joint has no points: its surfaces share '// &
                             'their nodes', 'faces with nodes of their own')

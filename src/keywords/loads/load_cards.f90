@@ -1,9 +1,11 @@
 !> The cards that give the loads of the steps, found by the family and the target of a load.
 module load_cards
+  use base_motion_cards, only: directions_of_motion, is_acceleration
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use dload_labels, only: elements_in_words
   use growing_lists, only: append, make_room
+  use node_dofs, only: num_directions
   use text_table, only: text_numbers
   use write_text, only: as_text
   implicit none
@@ -26,19 +28,24 @@ module load_cards
 
 contains
 
-  !> Lists *DLOAD, *DSLOAD, *RESERVOIR and *BASE MOTION.
+  !> Lists *DLOAD, *DSLOAD, *RESERVOIR and motions of the base.
   pure subroutine list_load_cards(cards, list)
     type(card), intent(in) :: cards(:) !< of the deck
     type(load_card_list), intent(out) :: list
-    integer :: i, line
+    integer :: i, line, dof
+    logical :: moves(num_directions)
     allocate (list%step(size(cards)))
     list%step = steps_of_cards(cards)
     do i = 1, size(cards)
       if (is_keyword(cards(i), 'RESERVOIR')) then
         call list%add('RESERVOIR', cards(i)%word('NAME'), i)
-      else if (is_keyword(cards(i), 'BASE MOTION')) then
-        call list%add('BASE MOTION', target_of_motion(cards(i)%integer('DOF'), &
-                                                      cards(i)%word('AMPLITUDE')), i)
+      else if (is_keyword(cards(i), 'BASE MOTION') .or. is_acceleration(cards(i))) then
+        moves = directions_of_motion(cards(i))
+        do dof = 1, size(moves)
+          if (moves(dof)) then
+            call list%add('BASE MOTION', target_of_motion(dof, cards(i)%word('AMPLITUDE')), i)
+          end if
+        end do
       else if (is_keyword(cards(i), 'DLOAD')) then
         do line = 1, cards(i)%num_lines
           call list%add('DLOAD', elements_in_words(cards(i), line)//' '// &

@@ -6,6 +6,7 @@ module check_motions
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_base_motion, only: base_motion
+  use base_motion_cards, only: is_acceleration
   use load_cards, only: load_card_list, target_of_motion
   use load_gravity, only: gravity_load
   use model_draft, only: draft
@@ -103,7 +104,10 @@ contains
     type(step_load), intent(in) :: work
     type(amplitude), intent(in) :: record
     type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: factor
     real(rk) :: g, peak
+    factor = 'a SCALE'
+    if (is_acceleration(model%cards(place))) factor = 'a factor'
     g = gravity_of(model)
     if (has_other_length(model%problem%materials) .and. &
         (model%record_unit(work%amplitude) /= '' .or. &
@@ -113,7 +117,7 @@ contains
     if (peak >= least_peak*g .and. peak <= largest_peak*g) return
     call model%cards(place)%warn(faults, "the peak of the motion '"//record%name//"' is "// &
                                  as_short_text(peak)//', which is '//as_short_text(peak/g)// &
-                                 ' g with g = '//as_text(g), 'a SCALE that turns the record '// &
+                                 ' g with g = '//as_text(g), factor//' that turns the record '// &
                                  'into the unit of acceleration of the deck')
   end subroutine warn_of_peak
 

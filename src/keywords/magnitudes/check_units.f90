@@ -7,6 +7,7 @@ module check_units
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use material_law, only: material
+  use base_motion_cards, only: is_acceleration
   use model_draft, only: draft
   use write_text, only: as_text
   implicit none
@@ -130,7 +131,7 @@ contains
           end if
         else if (is_keyword(this, 'DLOAD')) then
           call warn_of_gravity(this, why, faults)
-        else if (is_keyword(this, 'BASE MOTION')) then
+        else if (is_keyword(this, 'BASE MOTION') .or. is_acceleration(this)) then
           a = model%amplitude_of_name%find(this%word('AMPLITUDE'))
           call warn_of_record(this, model%cards(record(a)), why, faults)
         end if
@@ -170,12 +171,21 @@ contains
 
   !> A record that its unit has turned into m/s2.
   subroutine warn_of_record(this, record, why, faults)
-    type(card), intent(in) :: this, record !< *BASE MOTION and its *AMPLITUDE
+    type(card), intent(in) :: this, record !< *BASE MOTION or *BOUNDARY, and its *AMPLITUDE
     character(*), intent(in) :: why
     type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: remedy
+    real(rk) :: factor
     if (.not. record%has('UNIT') .and. record%word('FORMAT') /= 'AT2') return
-    if (abs(this%real('SCALE')*record%real('SCALE')) >= largest_scale) return
+    if (is_acceleration(this)) then
+      factor = this%real_at(1, 4)
+      remedy = 'a factor of 1000'
+    else
+      factor = this%real('SCALE')
+      remedy = 'SCALE=1000'
+    end if
+    if (abs(factor*record%real('SCALE')) >= largest_scale) return
     call this%warn(faults, "the record '"//this%text('AMPLITUDE')//"' is turned into m/s2"// &
-                   why//'; SCALE=1000 here turns it into mm/s2')
+                   why//'; '//remedy//' here turns it into mm/s2')
   end subroutine warn_of_record
 end module check_units
