@@ -34,7 +34,7 @@ module massless_acceleration
   !> Powers of P^-1 eps K: each takes a factor of some 1e-5 of what has mass.
   integer, parameter :: num_powers = 3
   !> The filter of motions that are too fast: powers of F, and of 1 - F^2.
-  integer, parameter :: order_of_filter = 2, num_filters = 4
+  integer, parameter :: order_of_filter = 2, num_filters = 13
 
 contains
 
@@ -52,12 +52,7 @@ contains
     class(equation_solver), allocatable :: solver
     real(rk) :: own(size(r)), reference(size(r)) ! r and load without their parts on N
     a = 0.0_rk
-    worst = 0
-    call make_solver(symmetric_solver, solver, error, matrix%is_shared)
-    if (.not. allocated(error)) call solver%analyse(matrix, error)
-    if (allocated(error)) return
-    call solver%factorise(matrix, sum_of_both, error)
-    worst = solver%failed_unknown
+    call factor_of(matrix, sum_of_both, solver, worst, error)
     if (allocated(error)) return
     own = r
     reference = load
@@ -68,6 +63,35 @@ contains
     call iterate(matrix, mass, solver, reference, own, a, worst, error)
   end subroutine find_constrained_acceleration
 
+  !> A solver with the factor of a matrix; `worst` is the unknown at which it is singular, or 0.
+  subroutine factor_of(matrix, values, solver, worst, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:)
+    class(equation_solver), allocatable, intent(out) :: solver
+    integer, intent(out) :: worst
+    type(error_type), allocatable, intent(out) :: error
+    worst = 0
+    call make_solver(symmetric_solver, solver, error, matrix%is_shared)
+    if (.not. allocated(error)) call solver%analyse(matrix, error)
+    if (allocated(error)) return
+    call solver%factorise(matrix, values, error)
+    worst = solver%failed_unknown
+  end subroutine factor_of
+
+  !> Solves for the free unknowns; x is zero on the prescribed ones.
+  subroutine solve_free(matrix, solver, force, x, error)
+    type(pattern), intent(in) :: matrix
+    class(equation_solver), intent(inout) :: solver
+    real(rk), intent(in) :: force(:) !< (num_total)
+    real(rk), intent(out) :: x(:) !< (num_total)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: column(matrix%num_free, 1)
+    x = 0.0_rk
+    column(:, 1) = force(:matrix%num_free)
+    call solver%solve(column, error)
+    if (.not. allocated(error)) x(:matrix%num_free) = column(:, 1)
+  end subroutine solve_free
+
   !> Takes from a force what a static displacement of the massless part takes: eps K N c.
   subroutine take_static_part(matrix, mass, sum_of_both, solver, force, error)
     type(pattern), intent(in) :: matrix
@@ -76,31 +100,26 @@ contains
     class(equation_solver), intent(inout) :: solver !< of P
     real(rk), intent(inout) :: force(:) !< (num_total) [N]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), dimension(size(force)) :: moved, product
-    real(rk) :: x(matrix%num_free, 1)
+    real(rk), dimension(size(force)) :: moved, product, x
     integer :: i
-    moved = 0.0_rk
-    x(:, 1) = force(:matrix%num_free)
-    call solver%solve(x, error)
-    if (allocated(error)) return
-    moved(:matrix%num_free) = x(:, 1)
+    call solve_free(matrix, solver, force, moved, error)
     do i = 1, num_powers
-      call multiply(matrix, mass, moved, product)
-      x(:, 1) = product(:matrix%num_free)
-      call solver%solve(x, error)
       if (allocated(error)) return
-      moved(:matrix%num_free) = moved(:matrix%num_free) - x(:, 1)
+      call multiply(matrix, mass, moved, product)
+      call solve_free(matrix, solver, product, x, error)
+      moved = moved - x
     end do
+    if (allocated(error)) return
     call multiply(matrix, sum_of_both - mass, moved, product)
     force = force - product
   end subroutine take_static_part
 
   !> Takes the part of motions whose frequencies w are high from an acceleration:
   !>
-  !>   a <- (1 - (1 - F^2)^4) a,   F = (M + tau K)^-1 M
+  !>   a <- (1 - (1 - F^2)^13) a,   F = (M + tau K)^-1 M
   !>
-  !> Slow motions lose (2 tau w^2)^4 of their part, fast ones keep 4/(tau w^2)^2. A facet that a tie
-  !> covers in part has motions with nearly no mass. N^T K a = 0 still holds.
+  !> Slow motions lose (2 tau w^2)^13 of their part, fast ones keep 13/(tau w^2)^2. A facet that a
+  !> tie covers in part has motions with nearly no mass. N^T K a = 0 still holds.
   subroutine leave_out_fast(matrix, mass, tau, stiffness, a, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values of M
@@ -110,24 +129,19 @@ contains
     type(error_type), allocatable, intent(out) :: error
     class(equation_solver), allocatable :: solver
     real(rk), dimension(size(a)) :: fast, slow, product
-    real(rk) :: x(matrix%num_free, 1)
-    integer :: i, k
-    call make_solver(symmetric_solver, solver, error, matrix%is_shared)
-    if (.not. allocated(error)) call solver%analyse(matrix, error)
-    if (.not. allocated(error)) call solver%factorise(matrix, mass + tau*stiffness, error)
-    if (allocated(error)) return
+    integer :: i, k, worst
+    call factor_of(matrix, mass + tau*stiffness, solver, worst, error)
     fast = a
     do i = 1, num_filters
       slow = fast
       do k = 1, order_of_filter
-        call multiply(matrix, mass, slow, product)
-        x(:, 1) = product(:matrix%num_free)
-        call solver%solve(x, error)
         if (allocated(error)) return
-        slow(:matrix%num_free) = x(:, 1)
+        call multiply(matrix, mass, slow, product)
+        call solve_free(matrix, solver, product, slow, error)
       end do
       fast = fast - slow
     end do
+    if (allocated(error)) return
     a = a - fast
   end subroutine leave_out_fast
 
@@ -194,19 +208,13 @@ contains
     real(rk), intent(in) :: rest(:)
     real(rk), intent(out) :: z(:), size_of_rest
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: half(size(rest)), x(matrix%num_free, 1)
-    half = 0.0_rk
+    real(rk), dimension(size(rest)) :: half, product
     z = 0.0_rk
     size_of_rest = 0.0_rk
-    x(:, 1) = rest(:matrix%num_free)
-    call solver%solve(x, error)
+    call solve_free(matrix, solver, rest, half, error)
     if (allocated(error)) return
-    half(:matrix%num_free) = x(:, 1)
-    call multiply(matrix, mass, half, z)
-    size_of_rest = dot(half, z)
-    x(:, 1) = z(:matrix%num_free)
-    call solver%solve(x, error)
-    z = 0.0_rk
-    z(:matrix%num_free) = x(:, 1)
+    call multiply(matrix, mass, half, product)
+    size_of_rest = dot(half, product)
+    call solve_free(matrix, solver, product, z, error)
   end subroutine precondition
 end module massless_acceleration

@@ -62,12 +62,11 @@ contains
         if (is_final(worst, error)) exit
         if (allocated(error)) exit ! a part is free, whatever the share
       end do
-      if (is_final(worst, error)) exit
-      if (.not. leaves_open) exit
+      if (is_final(worst, error) .or. .not. leaves_open) exit
       leaves_open = .false.
     end do
-    if (worst > 0) then
-      call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
+    if (.not. is_final(worst, error)) then
+      if (worst > 0) call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
     else if (.not. allocated(error)) then
       call leave_out_fast(system%matrix, system%mass, (dt/fastest_motion)**2, stiffness, a, error)
     end if
