@@ -5,7 +5,7 @@ from __future__ import annotations
 import h5py
 import numpy as np
 import pytest
-from stage_decks import GRAVITY, LOAD, OUTPUT, WEIGHT, YOUNG, add, build, lifts, remove, step
+from stage_decks import GRAVITY, LOAD, OUTPUT, STONE, WEIGHT, YOUNG, add, build, lifts, remove, step
 from tied_blocks import Blocks, node_set
 
 ROUND_OFF = 1e-12  # of sums of a few terms, over the largest value
@@ -244,3 +244,24 @@ def test_a_block_beside_another_that_has_settled(keyway):
     rows = last_rows(run, "el_BODY")
     assert np.abs(rows["S13"]).max() < 1e-9 * WEIGHT
     assert np.abs(rows["S33"][rows["element"] > 8]).max() < 1e-9 * WEIGHT
+
+
+def test_a_joint_below_an_absent_block_is_not_open(keyway):
+    """A gap of 10 mm below a block that is not there is no opening: not in the largest values, the
+    envelope, or the table."""
+    blocks = Blocks()
+    blocks.add("LOW", (4, 0, 4), (1, 0, 1), (1, 0, 1))
+    blocks.add("A", (2, 0, 2), (1, 0, 1), (1, 1, 2))
+    blocks.add("B", (2, 2, 4), (1, 0, 1), (1, 1, 2))
+    top = np.concatenate((blocks.side("A", "Z1"), blocks.side("B", "Z1")))
+    cards = node_set("BASE", blocks.side("LOW", "Z0")) + node_set("TOP", top)
+    cards += "*JOINT LAW, NAME=LAW, KN=1e10, KT=1e10, GAP=0.01\n"
+    cards += "".join(f"*JOINT, NAME=J{b}, LAW=LAW\n{b}_Z0, LOW_Z1\n" for b in "AB")
+    output = "*JOINT PRINT, JOINT=JB\n*ENVELOPE\nOPENING\n"
+    push = "*BOUNDARY\nTOP, 3, 3, -0.02\n"
+    deck = blocks.deck({"": STONE}, cards + "*BOUNDARY\nBASE, 1, 3\nTOP, 1, 2\n")
+    run = keyway(deck + step(remove("B") + push + output))
+    assert run.json["joints"]["JA"]["opening"]["anywhere"]["value"] == 0.0
+    assert run.json["joints"]["JB"]["opening"]["anywhere"]["value"] == 0.0
+    assert run.json["envelopes"]["OPENING"]["anywhere"]["value"] == 0.0
+    assert (run.csv("joint_JB")["opening"] == 0.0).all()

@@ -27,11 +27,13 @@ module joint_readings
 
 contains
 
-  !> Signed opening of each point: jump plus gap, positive when open [m].
+  !> Signed opening of each point: jump plus gap, positive when open; zero where an element behind
+  !> the point is absent [m].
   pure function opening_at_points(now) result(opening)
     type(joint_state), intent(in) :: now
     real(rk) :: opening(size(now%gap))
     opening = opening_of(now%jump(1, :), now%gap)
+    if (allocated(now%phase)) opening = merge(0.0_rk, opening, now%phase == phase_absent)
   end function opening_at_points
 
   !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node takes
@@ -129,13 +131,6 @@ contains
     opening = max(0.0_rk, opening)
     slip = hypot(now%slip(1, :), now%slip(2, :))
     pressure = max(0.0_rk, -now%traction(1, :))
-    if (allocated(now%phase)) then
-      where (now%phase == phase_absent)
-        opening = 0.0_rk
-        slip = 0.0_rk
-        pressure = 0.0_rk
-      end where
-    end if
     call note(record%opening, opening)
     call note(record%slip, slip)
     call note(record%pressure, pressure)

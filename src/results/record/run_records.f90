@@ -8,7 +8,6 @@ module run_records
   use dam_faces, only: dam_skin, find_dam_faces
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
   use extremes, only: extreme, extremes_by_face, note_values
-  use joint_law, only: phase_absent
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements, take_block
@@ -239,9 +238,6 @@ contains
     call note_envelope(item, on_nodes, now%total_time)
     do j = 1, size(model%joints)
       call self%fields(item%row)%of_joint(model, now, j, values)
-      if (allocated(now%joints(j)%phase)) then
-        where (now%joints(j)%phase == phase_absent) values(1, :) = 0.0_rk
-      end if
       call note_values(item%largest, max(0.0_rk, values(1, :)), model%joints(j)%x, &
                        self%joints(j)%is_upstream, self%joints(j)%is_downstream, &
                        now%total_time, item%wants_smallest)
