@@ -7,7 +7,7 @@ module check_histories
   use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
-  use base_motion_cards, only: is_acceleration
+  use base_motion_cards, only: moves_base
   use model_draft, only: draft
   use named_things, only: find_amplitude
   use step_control, only: increment_control, start_control
@@ -62,10 +62,7 @@ contains
       call warn_of_span(model%cards(i), model, step(i), model%problem%amplitudes(a), faults)
       if (view%amplitude /= a .or. view%step /= step(i)) call look_at(model, step(i), a, view)
       if (view%is_seen) call warn_of_increments(model%cards(i), model, view, coarse, faults)
-      if (.not. (is_keyword(model%cards(i), 'BASE MOTION') .or. &
-                 is_acceleration(model%cards(i)))) then
-        call warn_of_unit(model%cards(i), model, a, faults)
-      end if
+      if (.not. moves_base(model%cards(i))) call warn_of_unit(model%cards(i), model, a, faults)
     end do
   end subroutine warn_of_histories
 

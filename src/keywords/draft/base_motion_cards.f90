@@ -5,9 +5,15 @@ module base_motion_cards
   use node_dofs, only: num_directions
   implicit none
   private
-  public :: is_acceleration, directions_of_motion
+  public :: moves_base, is_acceleration, directions_of_motion
 
 contains
+
+  !> Whether a card moves the base.
+  pure logical function moves_base(this)
+    type(card), intent(in) :: this
+    moves_base = is_keyword(this, 'BASE MOTION') .or. is_acceleration(this)
+  end function moves_base
 
   !> Whether a card is *BOUNDARY, TYPE=ACCELERATION, another way to write a motion of the base.
   pure logical function is_acceleration(this)

@@ -1,6 +1,6 @@
 !> The cards that give the loads of the steps, found by the family and the target of a load.
 module load_cards
-  use base_motion_cards, only: directions_of_motion, is_acceleration
+  use base_motion_cards, only: directions_of_motion, moves_base
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
   use dload_labels, only: elements_in_words
@@ -39,7 +39,7 @@ contains
     do i = 1, size(cards)
       if (is_keyword(cards(i), 'RESERVOIR')) then
         call list%add('RESERVOIR', cards(i)%word('NAME'), i)
-      else if (is_keyword(cards(i), 'BASE MOTION') .or. is_acceleration(cards(i))) then
+      else if (moves_base(cards(i))) then
         moves = directions_of_motion(cards(i))
         do dof = 1, size(moves)
           if (moves(dof)) then

@@ -7,7 +7,7 @@ module check_units
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use material_law, only: material
-  use base_motion_cards, only: is_acceleration
+  use base_motion_cards, only: is_acceleration, moves_base
   use model_draft, only: draft
   use write_text, only: as_text
   implicit none
@@ -131,7 +131,7 @@ contains
           end if
         else if (is_keyword(this, 'DLOAD')) then
           call warn_of_gravity(this, why, faults)
-        else if (is_keyword(this, 'BASE MOTION') .or. is_acceleration(this)) then
+        else if (moves_base(this)) then
           a = model%amplitude_of_name%find(this%word('AMPLITUDE'))
           call warn_of_record(this, model%cards(record(a)), why, faults)
         end if
