@@ -22,7 +22,7 @@ module full_state
 
 contains
 
-  !> Three nodes, four unknowns, two joints of two points, five points of solids, guests.
+  !> Three nodes, two joints of two points, five points of solids, guests with and without history.
   subroutine make_full_state(now)
     type(state), allocatable, intent(out) :: now
     type(point_state) :: points

@@ -80,6 +80,22 @@ def test_a_bonded_joint_keeps_its_stiffness(keyway):
     assert table["opening"] == pytest.approx(-PRESSURE * 0.5 / 3e10, rel=1e-6)
 
 
+def test_the_thickness_of_the_tangential_stiffness(keyway):
+    """KT is E/THICKNESS/(2(1 + nu)) where PENETRATION is given, also beside KN: no warning says
+    that THICKNESS has no effect."""
+    moved, crest = {}, "*NODE PRINT, NSET=TOP\nU\n"
+    tilted = f"*DLOAD\nBLOCK, GRAV, {GRAVITY!r}, 0.02, 0., -1.\n"
+    for thickness in (0.5, 2.0):
+        law = f"KN=1e11, PENETRATION=1e-9, FRICTION=0.6, THICKNESS={thickness!r}"
+        run = keyway(column(law).deck(static(tilted + crest)), name=f"t{thickness:.0f}")
+        assert not any("THICKNESS" in text for text in run.json["warnings"])
+        moved[thickness] = run.csv("node_TOP")["U1"][-1]
+    # The shear stress of the sole is 0.02 of the pressure (2e-4 less: the direction is taken as a
+    # unit vector); the shear modulus is E/2 with a Poisson ratio of 0. The column bends alike.
+    expected = 0.02 * PRESSURE * (2.0 - 0.5) / (0.5 * 3e10)
+    assert moved[2.0] - moved[0.5] == pytest.approx(expected, rel=1e-3)
+
+
 def test_a_bar_bounces_off_a_rigid_wall(keyway):
     """The bar of test_joint_motion on a joint of KN = E/h without penetration (closed form).
 

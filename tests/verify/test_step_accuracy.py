@@ -196,22 +196,28 @@ def test_an_impact_has_no_estimate(keyway):
     assert any("ACCURACY does not bound" in text for text in run.json["warnings"])
 
 
-def test_increments_do_not_step_over_a_temperature(keyway):
+PULSE = ((0.0, 10.0), (0.50, 10.0), (0.51, 40.0), (0.52, 10.0), (24.0, 10.0))  # [s], degrees
+
+
+@pytest.mark.parametrize("form", ["amplitude", "table"])
+def test_increments_do_not_step_over_a_temperature(keyway, form):
     """A pulse of temperature of 20 ms on a column that is held: increments are no longer than the
     spacing of its history, given as an amplitude or as the rows of a table."""
+    card, files = "*TEMPERATURE, AMPLITUDE=HEAT\nALL, 40.\n", {}
+    if form == "table":
+        card = "*TEMPERATURE, INPUT=pulse.csv\n"
+        rows = [["node", *(f"{time}" for time, _ in PULSE)]]
+        rows += [[f"{node}", *(f"{value}" for _, value in PULSE)] for node in range(1, 9)]
+        files = {"pulse.csv": "".join(", ".join(row) + "\n" for row in rows)}
     deck = column(1, "burst", FIRST, "*CONTROLS, ACCURACY=0.5\n")
     deck = deck.replace("*ELASTIC", "*EXPANSION\n1e-5\n*ELASTIC")
-    deck = deck.replace(
-        "*BOUNDARY\nALL, 1, 2\nBASE, 3, 3\n",
-        "*AMPLITUDE, NAME=HEAT\n0., 0., 0.50, 0., 0.51, 1., 0.52, 0., 24., 0.\n"
-        "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 10.\n"
-        "*BOUNDARY\nALL, 1, 2\nBASE, 3, 3\n",
-    )
-    heated = deck.replace(
-        "*NODE PRINT, NSET=TOP\nU\n",
-        "*TEMPERATURE, AMPLITUDE=HEAT\nALL, 40.\n*NODE PRINT, NSET=TOP\nU, TEMP\n",
-    )
-    assert heated.count("*TEMPERATURE, AMPLITUDE") == 1
-    table = keyway(heated, name="heated").csv("node_TOP")
+    history = ", ".join(f"{time}, {(value - 10.0) / 30.0}" for time, value in PULSE)
+    supports = "*BOUNDARY\nALL, 1, 2\nBASE, 3, 3\n"
+    heat = f"*AMPLITUDE, NAME=HEAT\n{history}\n" * (form == "amplitude")
+    heat += "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 10.\n"
+    heated = deck.replace(supports, heat + supports)
+    output = "*NODE PRINT, NSET=TOP\nU"
+    heated = heated.replace(output, f"{card}{output}, TEMP")
+    table = keyway(heated, files=files).csv("node_TOP")
     assert np.diff(table["time"]).max() < 0.0101
     assert table["TEMP"].max() > 30.0
