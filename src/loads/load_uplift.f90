@@ -15,7 +15,7 @@ module load_uplift
   use water_paths, only: build_paths, find_wet, path_net
   implicit none
   private
-  public :: uplift_load, fill_linear, fill_open
+  public :: uplift_load, fill_dry, fill_linear, fill_open
 
   type, extends(load) :: uplift_load
     real(rk), allocatable :: pressure(:) !< (points) at factor 1, where there is water [Pa]
@@ -26,7 +26,6 @@ module load_uplift
     procedure :: add_force
     procedure :: joint_pressure
     procedure :: follow_joint
-    procedure :: remove_pressure
   end type uplift_load
 
 contains
@@ -41,6 +40,15 @@ contains
       pressure = lake%density*lake%gravity*max(0.0_rk, lake%water%level - joint%x(lake%water%up, :))
     end if
   end function hydrostatic_pressure
+
+  !> No pressure.
+  subroutine fill_dry(mesh, joint, self)
+    type(fe_mesh), intent(in) :: mesh
+    type(dam_joint), intent(in) :: joint
+    type(uplift_load), intent(inout) :: self
+    allocate (self%pressure(joint%num_points), source=0.0_rk)
+    call self%follow_joint(mesh, joint)
+  end subroutine fill_dry
 
   !> The classical diagram: full head at one edge, falling to zero at the other.
   subroutine fill_linear(mesh, joint, rim, lake, is_tail, self)
@@ -102,13 +110,6 @@ contains
       end do
     end do
   end subroutine follow_joint
-
-  !> No water, where the surface of the reservoir does not reach the joint.
-  pure subroutine remove_pressure(self)
-    class(uplift_load), intent(inout) :: self
-    self%pressure = 0.0_rk
-    self%force = 0.0_rk
-  end subroutine remove_pressure
 
   !> Adds the forces of a constant profile; does nothing for profile OPEN.
   subroutine add_force(self, mesh, density, force)
