@@ -105,7 +105,7 @@ def test_the_diagram_ends_where_the_solids_end(keyway, kind):
 
 @KINDS
 def test_a_reservoir_at_an_interim_face(keyway, kind):
-    """B is built first, with the water at its face towards A; A comes, and the water stands at A."""
+    """B is built first, with the water at its face towards A; then A comes."""
     run = keyway(
         base(kind)
         + step(remove("A") + LAKE.format("B_X0", 1.0) + OUTPUT)
