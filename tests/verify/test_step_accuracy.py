@@ -221,3 +221,32 @@ def test_increments_do_not_step_over_a_temperature(keyway, form):
     table = keyway(heated, files=files).csv("node_TOP")
     assert np.diff(table["time"]).max() < 0.0101
     assert table["TEMP"].max() > 30.0
+
+
+def shaken_wall(angle: float) -> str:
+    """A wall with added mass along its normal, turned about the vertical by an angle [rad]."""
+    mesh, number = box_mesh((2, 1, 4), stretched((2.0, 1.0, 8.0)))
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    mesh.x[:, :2] = mesh.x[:, :2] @ turn.T
+    mesh.node_sets["BASE"] = number[:, :, 0].ravel()
+    mesh.node_sets["TOP"] = number[:1, :1, -1].ravel()
+    mesh.surfaces["FACE"] = [(brick, 6) for brick in range(4)]
+    values = "".join(f"{value:.10g}\n" for value in motion_of("steady")[:150])
+    cards = f"*AMPLITUDE, NAME=LOAD, FORMAT=VALUES, DT={FIRST}\n{values}{elastic(1e8, 0.2, 2400.0)}"
+    cards += "*BOUNDARY\nBASE, 1, 3\n*STEP, INC=1000000\n*DYNAMIC\n0.04, 5.\n"
+    cards += "*CONTROLS, ACCURACY=0.02\n"
+    cards += "*RESERVOIR, NAME=LAKE, SURFACE=FACE, LEVEL=8., BED=0., HYDROSTATIC=NO,\n"
+    cards += "   ADDED MASS=WESTERGAARD, DIRECTION=NORMAL\n"
+    for dof, part in ((1, math.cos(angle)), (2, math.sin(angle))):
+        cards += f"*BASE MOTION, DOF={dof}, AMPLITUDE=LOAD, SCALE={part!r}\n"
+    return brick_deck(mesh, "C3D8", f"{cards}*NODE PRINT, NSET=TOP\nU\n*END STEP\n")
+
+
+def test_axes_of_the_deck(keyway):
+    """Increments do not depend on the axes, where added mass acts along the normal of a face."""
+    runs = [keyway(shaken_wall(a), name=f"turned_{k}") for k, a in enumerate((0.0, 0.6))]
+    straight, turned = (run.csv("node_TOP") for run in runs)
+    assert turned["time"] == pytest.approx(straight["time"], abs=1e-12)
+    along = turned["U1"] * math.cos(0.6) + turned["U2"] * math.sin(0.6)
+    # Two solutions of equations whose condition number is some 1e4.
+    assert along == pytest.approx(straight["U1"], abs=1e-9 * np.abs(straight["U1"]).max())

@@ -24,12 +24,26 @@ module error_in_time
 
 contains
 
-  !> The mass at each unknown; unknowns without mass have no error in time of their own.
+  !> The mass at each unknown: the mean over the unknowns of its node, so that the axes of the deck
+  !> make no difference to mass along one direction. Unknowns without mass have no error in time of
+  !> their own.
   subroutine find_weights(system, weights)
     type(dam_system), intent(in) :: system
     real(rk), allocatable, intent(out) :: weights(:) !< (num_total) [kg]
+    real(rk) :: mass(system%numbers%num_nodes)
+    integer :: unknowns(system%numbers%num_nodes)
+    integer :: i
     allocate (weights(system%matrix%num_total))
     call diagonal(system%mass_pattern, system%mass_entries, weights)
+    mass = 0.0_rk
+    unknowns = 0
+    associate (node => system%numbers%node)
+      do i = 1, size(weights)
+        mass(node(i)) = mass(node(i)) + weights(i)
+        unknowns(node(i)) = unknowns(node(i)) + 1
+      end do
+      weights = mass(node)/unknowns(node)
+    end associate
   end subroutine find_weights
 
   !> Takes in an increment that has converged, and tells how often the next one is to be doubled or,
