@@ -102,24 +102,24 @@ contains
     logical, intent(in) :: is_relevant(:) !< (elements)
     integer, intent(out) :: of_step(:) !< (steps)
     logical, allocatable, intent(out) :: is_absent(:, :) !< (elements, stages)
+    logical, allocatable :: lacks(:, :) !< (relevant elements, steps)
     integer, allocatable :: first_step(:)
-    integer :: s, k
+    integer :: e, s, k
     if (.not. allocated(model%problem%stages%is_absent)) then
       of_step = 1
       allocate (is_absent(size(is_relevant), 1), source=.false.)
       return
     end if
     allocate (first_step(0))
-    associate (lacks => model%problem%stages%is_absent)
-      do s = 1, size(of_step)
-        do k = 1, size(first_step)
-          if (all((lacks(:, s) .eqv. lacks(:, first_step(k))) .or. .not. is_relevant)) exit
-        end do
-        if (k > size(first_step)) first_step = [first_step, s]
-        of_step(s) = k
+    lacks = model%problem%stages%is_absent(pack([(e, e=1, size(is_relevant))], is_relevant), :)
+    do s = 1, size(of_step)
+      do k = 1, size(first_step)
+        if (all(lacks(:, s) .eqv. lacks(:, first_step(k)))) exit
       end do
-      is_absent = lacks(:, first_step)
-    end associate
+      if (k > size(first_step)) first_step = [first_step, s]
+      of_step(s) = k
+    end do
+    is_absent = model%problem%stages%is_absent(:, first_step)
   end subroutine number_stages
 
   !> Whether all solids behind facets are there; a facet without a solid is always there.
