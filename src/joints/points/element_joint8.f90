@@ -222,6 +222,7 @@ contains
     integer :: e, q, p, nodes(8)
 
     call open_points(4, 4*size(elements), points)
+    allocate (built%face(4*size(elements)))
     do e = 1, size(elements)
       nodes = mesh%nodes(:, elements(e))
       if (all(nodes(:4) == nodes(5:))) cycle
@@ -236,8 +237,10 @@ contains
         points%x(:, p) = matmul(x, n)
         points%area(p) = norm2(area)
         points%normal(:, p) = side(e)*area
+        built%face(p) = e
       end do
     end do
+    built%face = built%face(:points%num_points)
     call close_points(points, built)
   end subroutine gather_gauss_points
 

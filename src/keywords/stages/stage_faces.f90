@@ -1,7 +1,8 @@
 !> The parts of joints whose faces come and go with their solids (theory.md, 15.1).
 !>
-!> A part is built as a joint of its faces alone; its points are found among those of the complete
-!> joint by their slave node and their normal.
+!> With points at nodes, a part is built as a joint of its faces alone; its points are found among
+!> those of the complete joint by their slave node and their normal. A Gauss point belongs to one
+!> face, and comes and goes with it.
 module stage_faces
   use coupling_joint, only: lay_node_points
   use deck_scan, only: is_keyword
@@ -31,7 +32,8 @@ module stage_faces
 
 contains
 
-  !> Gives parts to the joints whose faces do not all come and go together.
+  !> Gives parts to the joints with faces that are absent in some step. The nodes of such a face may
+  !> have other elements, so that they do not say whether its points are there.
   subroutine complete_parts(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -43,10 +45,13 @@ contains
       call list_faces(model, j, faces)
       call number_parts(model%problem%stages%is_absent, faces, parts)
       call warn_of_idle_grout(model, j, parts, faults)
-      if (.not. model%problem%joints(j)%is_nodal) cycle
-      if (size(parts%is_there, 1) <= 1) cycle
-      call share_areas(model, j, faces, parts)
-      if (allocated(faces%segments%slave)) call list_rows(model, j, faces, parts)
+      if (all(parts%is_there)) cycle
+      if (model%problem%joints(j)%is_nodal) then
+        call share_areas(model, j, faces, parts)
+        if (allocated(faces%segments%slave)) call list_rows(model, j, faces, parts)
+      else
+        call assign_areas(model%problem%joints(j), faces, parts)
+      end if
       model%problem%joints(j)%parts = parts
     end do
   end subroutine complete_parts
@@ -134,6 +139,18 @@ contains
       end do
     end do
   end subroutine share_areas
+
+  !> The area of a Gauss point is that of the part of its face.
+  pure subroutine assign_areas(joint, faces, parts)
+    type(dam_joint), intent(in) :: joint
+    type(face_list), intent(in) :: faces
+    type(stage_parts), intent(inout) :: parts
+    integer :: p
+    allocate (parts%area(size(parts%is_there, 1), joint%num_points), source=0.0_rk)
+    do p = 1, joint%num_points
+      parts%area(faces%part(joint%face(p)), p) = joint%area(p)
+    end do
+  end subroutine assign_areas
 
   !> A joint of some of the faces.
   subroutine build_alone(model, number, faces, is_chosen, alone)
