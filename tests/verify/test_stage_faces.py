@@ -86,6 +86,7 @@ def test_gauss_points_below_an_absent_block(keyway, joint):
         found = pressures(run, number)
         for name, p in zip(NAMES, (old, new, old, new), strict=True):
             assert found[name] == pytest.approx(-p, rel=1e-9, abs=1e-9 * FIRST), (number, name)
+    assert run.json["joints"]["J"]["area"] == pytest.approx(4.0, rel=1e-12)  # of the whole joint
     assert at_end(run, 1, "node_FREE", "U3").max() <= 0.0
     low = at_end(run, 1, "node_FREE", "U3")
     assert low.min() == pytest.approx(-FIRST / KN - FIRST / YOUNG, rel=1e-9)
@@ -137,3 +138,20 @@ def test_held_nodes_of_an_absent_block_wait(keyway, joint):
     assert np.sum(moved[1] == 0.0) == 4  # the nodes that D alone has
     assert moved[2] == pytest.approx(1e-3, rel=1e-12)
     assert np.abs(at_end(run, 2, "el_BODY", "S33")).max() < 1e-9 * YOUNG * 1e-3
+
+
+@INTEGRATIONS
+@pytest.mark.parametrize("gone", ["A", "NEW"])
+def test_a_block_in_the_place_of_another(keyway, integration, gone):
+    """NEW has the nodes of A, and one of both is absent: the JOINT8 element below them acts."""
+    deck = row("elements", integration)
+    block = deck.split("*ELEMENT, TYPE=C3D8, ELSET=A\n")[1].split("\n")[0]
+    twin = f"*ELEMENT, TYPE=C3D8, ELSET=NEW\n500, {block.split(', ', 1)[1]}\n"
+    deck = deck.replace("*MATERIAL", f"{twin}*MATERIAL", 1)
+    deck = deck.replace(
+        "*ELSET, ELSET=BODY", "*SOLID SECTION, ELSET=NEW, MATERIAL=M\n*ELSET, ELSET=X"
+    )
+    stays = "A" if gone == "NEW" else "NEW"
+    load = press(**{stays: FIRST, "B": FIRST, "C": FIRST, "D": FIRST}).replace("P4", "P2")
+    run = keyway(deck + step(remove(gone) + load + OUTPUT))
+    assert at_end(run, 1, "joint_J", "tn") == pytest.approx(-FIRST, rel=1e-9)
