@@ -13,7 +13,7 @@ import pytest
 import pyvista
 from stage_decks import YOUNG, add, remove, step
 from test_stage_areas import at_end, press
-from tied_blocks import Blocks, node_set
+from tied_blocks import Blocks, node_set, ties
 
 KN, FIRST, SECOND = 1e10, 4e5, 1e6  # [Pa/m]; pressures [Pa]
 NAMES = "ABCD"
@@ -155,3 +155,32 @@ def test_a_block_in_the_place_of_another(keyway, integration, gone):
     load = press(**{stays: FIRST, "B": FIRST, "C": FIRST, "D": FIRST}).replace("P4", "P2")
     run = keyway(deck + step(remove(gone) + load + OUTPUT))
     assert at_end(run, 1, "joint_J", "tn") == pytest.approx(-FIRST, rel=1e-9)
+
+
+@pytest.mark.parametrize("slave", ["top", "low"])
+@pytest.mark.parametrize("bricks", [3, 6], ids=["equal", "different"])
+def test_a_tie_over_an_absent_block(keyway, bricks, slave):
+    """T is tied to A and C, and to B, whose nodes A and C have. Without B equal meshes leave the
+    load 3 p of T to A and C, by equilibrium and symmetry; a tie of a finer T would hold it over the
+    gap, and is refused."""
+    blocks = Blocks()
+    for i, name in enumerate("ABC"):
+        blocks.add(name, (1, i, i + 1), (1, 0, 1), (1, 0, 1))
+        if i > 0:
+            blocks.share("ABC"[i - 1], name)
+    blocks.add("T", (bricks, 0, 3), (1, 0, 1), (1, 1, 2))
+    base = np.unique([blocks.side(name, "Z0") for name in "AC"])
+    cards = node_set("BASE", base) + "*SURFACE, NAME=LOW, TYPE=ELEMENT\nA, S2\nB, S2\nC, S2\n"
+    cards += ties(("T_Z0", "LOW") if slave == "top" else ("LOW", "T_Z0"))
+    cards += "*BOUNDARY\nBASE, 1, 3\n"
+    deck = blocks.deck({"": f"*ELASTIC\n{YOUNG!r}, 0.2\n"}, cards)
+    deck += step(remove("B") + f"*DSLOAD\nT_Z1, P, {FIRST!r}\n*EL PRINT, ELSET=BODY\nS\n")
+    if bricks == 3:
+        run = keyway(deck)
+        block = at_end(run, 1, "el_BODY", "element")
+        for number in (1, 3):
+            mean = at_end(run, 1, "el_BODY", "S33")[block == number].mean()
+            assert mean == pytest.approx(-1.5 * FIRST, rel=1e-9)
+    else:
+        run = keyway(deck, code=2)
+        assert "in step 1 element 2 is absent, and the tie would hold its face" in run.stderr
