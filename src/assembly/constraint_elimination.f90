@@ -58,7 +58,7 @@ contains
   end subroutine number_step
 
   !> Marks nodes of joint elements that supports hold in all directions: a base without solids. It
-  !> moves as the supports do, and has their reactions.
+  !> moves as the supports do, and has their reactions. Nodes whose solids are absent are no base.
   pure subroutine add_held_bases(mesh, is_fixed, is_used)
     type(fe_mesh), intent(in) :: mesh
     logical, intent(in) :: is_fixed(:, :) !< (components, nodes)
@@ -68,6 +68,7 @@ contains
       if (mesh%element_type(e) /= 'JOINT8') cycle
       do k = 1, size(mesh%nodes, 1)
         if (mesh%nodes(k, e) == 0) cycle
+        if (.not. are_there(mesh, [mesh%nodes(k, e)])) cycle
         if (all(is_fixed(:num_directions, mesh%nodes(k, e)))) is_used(mesh%nodes(k, e)) = .true.
       end do
     end do

@@ -95,6 +95,7 @@ set(sources
   stages/finish_stages.f90
   stages/keywords_stages.f90
   stages/stage_faces.f90
+  stages/stage_ties.f90
   steps/card_fields.f90
   steps/check_accuracy.f90
   steps/check_requests.f90

@@ -87,6 +87,7 @@ contains
     integer :: s, q, p
     built%is_nodal = .false.
     call open_points(4*segments%num_segments, 32*segments%num_segments, built)
+    allocate (built%face(4*segments%num_segments))
     p = 0
     do s = 1, segments%num_segments
       call find_quarters(x, slave, master, segments, s, points, quarters)
@@ -99,12 +100,14 @@ contains
           built%rotation(:, :, p) = local_axes(-quarters(q)%normal)
           built%x(:, p) = matmul(x(:, own), quarters(q)%slave_shape)
           built%area(p) = quarters(q)%area
+          built%face(p) = s
           built%clearance(p) = merge(quarters(q)%gap, 0.0_rk, is_measured)
           built%admissible_slip(p) = min(facet_extent(x(:, own)), facet_extent(x(:, other)))
         end do
       end associate
     end do
     call close_points(p, built)
+    built%face = built%face(:p)
     call list_cells(slave, segments, spread(.false., 1, size(slave%node, 2)), built%cells)
   end subroutine lay_gauss_points
 

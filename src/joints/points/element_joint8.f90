@@ -9,13 +9,22 @@ module element_joint8
   use element_catalogue, only: is_solid
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
+  use growing_lists, only: append, make_room
   use joint_points, only: draw_elements, dam_joint, list_faces, local_axes, share_a_plane
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
   use shape_quad4, only: facet_point
   implicit none
   private
-  public :: build_joint_points, find_attached_solids
+  public :: build_joint_points, find_attached_solids, attached_solids
+
+  !> Solids whose faces lie on those of JOINT8 elements. Several of one side take the place of each
+  !> other in stages (*MODEL CHANGE).
+  type :: attached_solids
+    integer :: num = 0
+    integer, allocatable :: side(:) !< 2 (element - 1) + 1 for the master face, + 2 for the slave's
+    integer, allocatable :: solid(:) !< position in the mesh
+  end type attached_solids
 
   !> Largest distance of two nodes of a pair, over the longer diagonal of the facet.
   real(rk), parameter :: coincidence = 1.0e-4_rk
@@ -59,11 +68,12 @@ contains
   end subroutine build_joint_points
 
   !> The solids of the faces of JOINT8 elements, and the sense of their normals.
-  subroutine find_attached_solids(mesh, elements, solid, side)
+  subroutine find_attached_solids(mesh, elements, solid, side, all_of_them)
     type(fe_mesh), intent(in) :: mesh
     integer, intent(in) :: elements(:) !< positions of JOINT8 elements
     integer, allocatable, intent(out) :: solid(:, :) !< (2, elements) behind master, slave; 0: none
     integer, intent(out) :: side(:) !< 1: normal by nodes 1-2-3-4, -1: against it, 0: contradiction
+    type(attached_solids), intent(out), optional :: all_of_them
     type(face_table) :: table
     integer, allocatable :: sense(:, :)
     integer :: e, i, face, number, nodes(4)
@@ -81,6 +91,7 @@ contains
         number = find_face(table, nodes)
         do while (number > 0)
           i = (number + 1)/2
+          if (present(all_of_them)) call note_solid(number, e, all_of_them)
           call attach(mesh, e, face, elements(i), solid(2 - mod(number, 2), i), &
                       sense(2 - mod(number, 2), i))
           number = find_face(table, nodes, number)
@@ -92,6 +103,15 @@ contains
     where (sense(1, :)*sense(2, :) > 0) side = 0
     where (sense(1, :) == 0 .and. sense(2, :) == 0) side = 1
   end subroutine find_attached_solids
+
+  !> Adds a solid to the list.
+  pure subroutine note_solid(side, solid, list)
+    integer, intent(in) :: side, solid
+    type(attached_solids), intent(inout) :: list
+    call make_room(list%side, list%num, 1)
+    call append(list%solid, list%num, solid)
+    list%side(list%num) = side
+  end subroutine note_solid
 
   !> Records a solid whose face lies on that of a joint. A face between two solids gives no sense.
   subroutine attach(mesh, element, face, joint_element, solid, sense)
@@ -105,7 +125,7 @@ contains
                         face_vector(mesh%x(:, mesh%nodes(1:4, joint_element))))
     if (solid == 0) then
       sense = merge(1, -1, along > 0.0_rk)
-    else
+    else if (sense*along < 0.0_rk) then
       sense = 0
     end if
     solid = element
@@ -222,6 +242,7 @@ contains
     integer :: e, q, p, nodes(8)
 
     call open_points(4, 4*size(elements), points)
+    allocate (built%face(4*size(elements)))
     do e = 1, size(elements)
       nodes = mesh%nodes(:, elements(e))
       if (all(nodes(:4) == nodes(5:))) cycle
@@ -236,8 +257,10 @@ contains
         points%x(:, p) = matmul(x, n)
         points%area(p) = norm2(area)
         points%normal(:, p) = side(e)*area
+        built%face(p) = e
       end do
     end do
+    built%face = built%face(:points%num_points)
     call close_points(points, built)
   end subroutine gather_gauss_points
 

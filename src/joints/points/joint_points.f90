@@ -66,6 +66,7 @@ module joint_points
     real(rk), allocatable :: area(:) !< tributary area of each point [m2]
     real(rk), allocatable :: clearance(:) !< (points) as meshed, beside the law's gap [m]
     real(rk), allocatable :: admissible_slip(:) !< (points) limit of small sliding [m]
+    integer, allocatable :: face(:) !< (Gauss points) JOINT8 element or segment, by its position
     type(stage_parts), allocatable :: parts !< only where parts of points come and go
     logical, allocatable :: is_idle(:) !< (points) all parts are absent in the present step
     type(joint_cells) :: cells

@@ -1,9 +1,11 @@
 !> Warns of values of a step that are given twice, and says which of them acts.
 module check_repeats
+  use base_motion_cards, only: directions_of_motion, is_acceleration, moves_base
   use deck_card, only: card
   use deck_scan, only: steps_of_cards
   use diagnostics, only: diagnostic_list
   use model_draft, only: draft
+  use node_dofs, only: num_directions
   use text_buffers, only: text_buffer
   use text_table, only: text_numbers
   use write_text, only: as_text
@@ -39,7 +41,42 @@ contains
         j = before(j)
       end do
     end do
+    call warn_of_motions(model, step, faults)
   end subroutine warn_of_repeats
+
+  !> Motions of the base in one direction in one step add up. The accelerations of all supports are
+  !> one motion, whatever the number of their cards.
+  subroutine warn_of_motions(model, step, faults)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: step(:) !< of each card, 0: before the first
+    type(diagnostic_list), intent(inout) :: faults
+    logical, dimension(num_directions) :: moves, is_moved, is_moved_by_supports
+    integer :: i, dof, present
+    present = 0
+    is_moved = .false.
+    is_moved_by_supports = .false.
+    do i = 1, size(step)
+      if (step(i) == 0) cycle
+      if (step(i) /= present) then
+        present = step(i)
+        is_moved = .false.
+        is_moved_by_supports = .false.
+      end if
+      if (.not. moves_base(model%cards(i))) cycle
+      moves = directions_of_motion(model%cards(i))
+      if (is_acceleration(model%cards(i))) then
+        moves = moves .and. .not. is_moved_by_supports
+        is_moved_by_supports = is_moved_by_supports .or. moves
+      end if
+      do dof = 1, num_directions
+        if (moves(dof) .and. is_moved(dof)) then
+          call model%cards(i)%warn(faults, 'the base moves in direction '//as_text(dof)// &
+                                   ' in this step already: both motions add up')
+        end if
+      end do
+      is_moved = is_moved .or. moves
+    end do
+  end subroutine warn_of_motions
 
   !> What cards have in common of which one may repeat the other; '' for cards without repeats.
   function key_of(this) result(key)
@@ -50,8 +87,6 @@ contains
     select case (this%spec%name)
     case ('CONTROLS', 'DAMPING', 'RESTART')
       key = nl//this%spec%name
-    case ('BASE MOTION')
-      key = nl//this%spec%name//nl//as_text(this%integer('DOF'))
     case ('RESERVOIR')
       key = nl//this%spec%name//nl//this%word('SURFACE')
     case ('CLOAD', 'DLOAD', 'DSLOAD')
@@ -98,9 +133,6 @@ contains
       is_repeat = old%has('MODAL') .eqv. new%has('MODAL')
       if (is_repeat) call new%warn(faults, 'a *DAMPING of this kind is given in this step '// &
                                    'already: the last one acts')
-    case ('BASE MOTION')
-      call new%warn(faults, 'the base moves in direction '//new%word('DOF')// &
-                    ' in this step already: both motions add up')
     case ('RESTART')
       call new%warn(faults, 'a *RESTART is given in this step already: the last one acts')
     case ('RESERVOIR')

@@ -5,6 +5,7 @@ module finish_stages
   use element_catalogue, only: is_solid
   use model_draft, only: draft
   use stage_faces, only: complete_parts
+  use stage_ties, only: check_tied_faces
   use step_plan, only: step_before
   use write_text, only: as_text
   implicit none
@@ -32,6 +33,7 @@ contains
     end associate
     if (.not. allocated(model%problem%stages%is_absent)) return
     model%problem%stages%material = model%problem%mesh%material_of_element
+    if (.not. faults%has_errors()) call check_tied_faces(model, faults)
     if (.not. faults%has_errors()) call complete_parts(model, faults)
     if (.not. faults%has_errors()) call warn_of_nothing_left(model, faults)
   end subroutine complete_stages

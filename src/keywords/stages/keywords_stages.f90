@@ -31,8 +31,9 @@ contains
                    'stress in the geometry of this moment, and a new history. The forces '// &
                    'that the change leaves without balance act over the step. Absent '// &
                    'elements have neither weight nor mass, nor loads on their faces; a point '// &
-                   'of a joint and a tied node act while all nodes that they connect have '// &
-                   'an element. ADD alone is ADD=STRAIN FREE.'
+                   'of a joint acts while the elements on both sides of its face are there, '// &
+                   'a tied node while all nodes of the tie have an element. ADD alone is '// &
+                   'ADD=STRAIN FREE.'
     spec%example = '*MODEL CHANGE, TYPE=ELEMENT, REMOVE'//nl//'LIFT_2, LIFT_3'//nl// &
                    '*MODEL CHANGE, TYPE=ELEMENT, ADD=STRAIN FREE'//nl//'LIFT_2'
     spec%fewest_lines = 1

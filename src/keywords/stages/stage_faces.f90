@@ -1,12 +1,13 @@
 !> The parts of joints whose faces come and go with their solids (theory.md, 15.1).
 !>
-!> A part is built as a joint of its faces alone; its points are found among those of the complete
-!> joint by their slave node and their normal.
+!> With points at nodes, a part is built as a joint of its faces alone; its points are found among
+!> those of the complete joint by their slave node and their normal. A Gauss point belongs to one
+!> face, and comes and goes with it.
 module stage_faces
   use coupling_joint, only: lay_node_points
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
-  use element_joint8, only: build_joint_points, find_attached_solids
+  use element_joint8, only: attached_solids, build_joint_points, find_attached_solids
   use errors, only: error_type
   use facet_segments, only: find_segments
   use finish_joints, only: farthest_contact, farthest_gap, followers
@@ -22,16 +23,18 @@ module stage_faces
 
   !> The faces of a joint: JOINT8 elements, or segments between two surfaces.
   type :: face_list
+    integer :: num_faces = 0
     integer, allocatable :: element(:) !< (faces) JOINT8 elements
     type(facet_set) :: slave, master
     type(segment_set) :: segments
-    integer, allocatable :: solid(:, :) !< (2, faces) behind both sides, 0 for none
+    type(attached_solids) :: behind !< the solids of both sides of each face
     integer, allocatable :: part(:) !< (faces) which of them come and go together
   end type face_list
 
 contains
 
-  !> Gives parts to the joints whose faces do not all come and go together.
+  !> Gives parts to the joints with faces that are absent in some step. The nodes of such a face may
+  !> have other elements, so that they do not say whether its points are there.
   subroutine complete_parts(model, faults)
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
@@ -43,10 +46,13 @@ contains
       call list_faces(model, j, faces)
       call number_parts(model%problem%stages%is_absent, faces, parts)
       call warn_of_idle_grout(model, j, parts, faults)
-      if (.not. model%problem%joints(j)%is_nodal) cycle
-      if (size(parts%is_there, 1) <= 1) cycle
-      call share_areas(model, j, faces, parts)
-      if (allocated(faces%segments%slave)) call list_rows(model, j, faces, parts)
+      if (all(parts%is_there)) cycle
+      if (model%problem%joints(j)%is_nodal) then
+        call share_areas(model, j, faces, parts)
+        if (allocated(faces%segments%slave)) call list_rows(model, j, faces, parts)
+      else
+        call assign_areas(model%problem%joints(j), faces, parts)
+      end if
       model%problem%joints(j)%parts = parts
     end do
   end subroutine complete_parts
@@ -76,39 +82,47 @@ contains
     integer, intent(in) :: number !< of the joint
     type(face_list), intent(out) :: faces
     type(surface_cover) :: cover
-    integer, allocatable :: side(:)
+    integer, allocatable :: solid(:, :), sense(:)
+    integer :: s
     associate (request => model%joints(number), mesh => model%problem%mesh)
       if (request%slave == 0) then
         faces%element = request%elements
-        allocate (side(size(faces%element)))
-        call find_attached_solids(mesh, faces%element, faces%solid, side)
+        faces%num_faces = size(faces%element)
+        allocate (sense(faces%num_faces))
+        call find_attached_solids(mesh, faces%element, solid, sense, faces%behind)
         return
       end if
       call list_surface_facets(mesh, model%problem%surfaces(request%slave), faces%slave)
       call list_surface_facets(mesh, model%problem%surfaces(request%master), faces%master)
       call find_segments(mesh%x, faces%slave, faces%master, faces%segments, cover, &
                          merge(farthest_gap, farthest_contact, request%is_measured))
-      associate (n => faces%segments%num_segments)
-        allocate (faces%solid(2, n))
-        faces%solid(1, :) = faces%slave%element(faces%segments%slave(:n))
-        faces%solid(2, :) = faces%master%element(faces%segments%master(:n))
-      end associate
+      faces%num_faces = faces%segments%num_segments
+      faces%behind%num = 2*faces%num_faces
+      faces%behind%side = [(s, s=1, 2*faces%num_faces)]
+      faces%behind%solid = [(faces%slave%element(faces%segments%slave(s)), &
+                             faces%master%element(faces%segments%master(s)), s=1, faces%num_faces)]
     end associate
   end subroutine list_faces
 
-  !> Numbers the faces so that those of one part come and go together.
+  !> Numbers the faces so that those of one part come and go together. Of several solids on one side
+  !> one is enough: a solid may take the place of another.
   subroutine number_parts(is_absent, faces, parts)
     logical, intent(in) :: is_absent(:, :) !< (elements, steps)
     type(face_list), intent(inout) :: faces
     type(stage_parts), intent(out) :: parts
-    logical :: lacks(size(faces%solid, 2), size(is_absent, 2))
+    logical, allocatable :: lacks(:, :) !< (faces, steps)
+    logical, allocatable :: has_none(:, :) !< (sides, steps) has solids that are all absent
     integer :: f, i
-    lacks = .false.
-    do f = 1, size(faces%solid, 2)
-      do i = 1, 2
-        if (faces%solid(i, f) > 0) lacks(f, :) = lacks(f, :) .or. is_absent(faces%solid(i, f), :)
-      end do
+    allocate (has_none(2*faces%num_faces, size(is_absent, 2)), source=.false.)
+    do i = 1, faces%behind%num
+      has_none(faces%behind%side(i), :) = .true.
     end do
+    do i = 1, faces%behind%num
+      associate (side => faces%behind%side(i), solid => faces%behind%solid(i))
+        has_none(side, :) = has_none(side, :) .and. is_absent(solid, :)
+      end associate
+    end do
+    lacks = has_none(1::2, :) .or. has_none(2::2, :)
     faces%part = classes_of(lacks)
     allocate (parts%is_there(maxval([0, faces%part]), size(is_absent, 2)))
     do f = 1, size(faces%part)
@@ -134,6 +148,18 @@ contains
       end do
     end do
   end subroutine share_areas
+
+  !> The area of a Gauss point is that of the part of its face.
+  pure subroutine assign_areas(joint, faces, parts)
+    type(dam_joint), intent(in) :: joint
+    type(face_list), intent(in) :: faces
+    type(stage_parts), intent(inout) :: parts
+    integer :: p
+    allocate (parts%area(size(parts%is_there, 1), joint%num_points), source=0.0_rk)
+    do p = 1, joint%num_points
+      parts%area(faces%part(joint%face(p)), p) = joint%area(p)
+    end do
+  end subroutine assign_areas
 
   !> A joint of some of the faces.
   subroutine build_alone(model, number, faces, is_chosen, alone)

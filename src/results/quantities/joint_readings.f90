@@ -39,21 +39,25 @@ contains
   !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node takes
   !> the mean of its points, weighted by area. A slave node has one point (at a kink one for each
   !> plane); a master node has the points that are projected onto it. Negative weights of a mortar
-  !> projection are left out: no node exceeds the largest point.
+  !> projection are left out: no node exceeds the largest point. Absent points take no part.
   pure function opening_at_nodes(model, now) result(opening)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     real(rk) :: opening(model%mesh%num_nodes)
     real(rk) :: total(model%mesh%num_nodes)
     real(rk), allocatable :: of_points(:)
+    logical, allocatable :: is_there(:)
     integer :: j, p, k
     real(rk) :: share
     opening = 0.0_rk
     total = 0.0_rk
     do j = 1, size(model%joints)
       of_points = opening_at_points(now%joints(j))
+      is_there = spread(.true., 1, size(of_points))
+      if (allocated(now%joints(j)%phase)) is_there = now%joints(j)%phase /= phase_absent
       associate (joint => model%joints(j))
         do p = 1, joint%num_points
+          if (.not. is_there(p)) cycle
           do k = joint%first(p), joint%first(p + 1) - 1
             share = joint%weight(k)*joint%area(p)
             if (k >= joint%first_master(p)) share = -share

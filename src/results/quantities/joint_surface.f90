@@ -17,6 +17,7 @@ module joint_surface
   !> A quantity at the points of a joint.
   type :: joint_values
     real(rk), allocatable :: at(:, :) !< (components, points); unallocated: the joint has no values
+    logical, allocatable :: is_absent(:) !< (points) takes no part; unallocated: none
   end type joint_values
 
   !> Smaller weights, and smaller differences of weights, are round-off of the clipping of facets
@@ -292,36 +293,57 @@ contains
   end subroutine append
 
   !> Means of a quantity of points at the corners, weighted by share; zero where there is no point.
+  !> Where some points are absent, the others have their shares too.
   pure subroutine means_on_corners(drawn, of_joints, means)
     type(drawn_joints), intent(in) :: drawn
     type(joint_values), intent(in) :: of_joints(:)
     real(rk), intent(out) :: means(:, :) !< (components, corners)
+    real(rk) :: whole, present
     integer :: c, i
     means = 0.0_rk
     do c = 1, drawn%num_corners
+      whole = 0.0_rk
+      present = 0.0_rk
       associate (values => of_joints(drawn%joint_of(c)))
         if (.not. allocated(values%at)) cycle
         do i = drawn%first_point(c), drawn%first_point(c + 1) - 1
+          whole = whole + drawn%share(i)
+          if (.not. is_present(values, drawn%point(i))) cycle
+          present = present + drawn%share(i)
           means(:, c) = means(:, c) + drawn%share(i)*values%at(:, drawn%point(i))
         end do
       end associate
+      if (present > 0.0_rk .and. present < whole) means(:, c) = means(:, c)*whole/present
     end do
   end subroutine means_on_corners
 
-  !> A whole number at each corner: that of the point with the largest share; -1 without a point.
+  !> Whether a point of a joint takes part.
+  pure logical function is_present(values, point)
+    type(joint_values), intent(in) :: values
+    integer, intent(in) :: point
+    is_present = .true.
+    if (allocated(values%is_absent)) is_present = .not. values%is_absent(point)
+  end function is_present
+
+  !> A whole number at each corner: that of the point with the largest share, of the points that are
+  !> there if one is; -1 without a point.
   pure function heaviest_on_corners(drawn, of_joints) result(numbers)
     type(drawn_joints), intent(in) :: drawn
     type(joint_values), intent(in) :: of_joints(:) !< of one component
     integer :: numbers(drawn%num_corners)
-    integer :: c, first, last
+    integer :: c, i, first, last
+    logical, allocatable :: takes_part(:)
     numbers = -1
     do c = 1, drawn%num_corners
       first = drawn%first_point(c)
       last = drawn%first_point(c + 1) - 1
       if (last < first) cycle
-      associate (most => drawn%point(first - 1 + maxloc(abs(drawn%share(first:last)), dim=1)), &
-                 values => of_joints(drawn%joint_of(c)))
-        if (allocated(values%at)) numbers(c) = nint(values%at(1, most))
+      associate (values => of_joints(drawn%joint_of(c)))
+        if (.not. allocated(values%at)) cycle
+        takes_part = [(is_present(values, drawn%point(i)), i=first, last)]
+        takes_part = takes_part .or. .not. any(takes_part)
+        i = first - 1 + maxloc(abs(drawn%share(first:last)), dim=1, mask=takes_part)
+        numbers(c) = nint(values%at(1, drawn%point(i)))
       end associate
     end do
   end function heaviest_on_corners

@@ -6,6 +6,7 @@ module run_records
   use run_ledger, only: ledger
   use analysis_state, only: state
   use dam_faces, only: dam_skin, find_dam_faces
+  use dam_mesh, only: element_is_there
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
   use extremes, only: extreme, extremes_by_face, note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint
@@ -244,7 +245,8 @@ contains
     end do
   end subroutine note_joints
 
-  !> A field of inelastic solids: the extremes are those of the integration points.
+  !> A field of inelastic solids: the extremes are those of the integration points of elements that
+  !> are there.
   subroutine note_points(self, model, now, on_nodes, item)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -259,6 +261,8 @@ contains
       call note_means(item, mean)
     end if
     do i = 1, size(model%inelastic)
+      ! The elements of a block come and go together.
+      if (.not. element_is_there(model%mesh, model%inelastic(i)%elements(1))) cycle
       associate (points => model%inelastic(i)%points, faces => self%damage%faces(i))
         select case (item%name)
         case ('S1_POINT', 'S3_POINT') ! the values on the nodes come from those at the points

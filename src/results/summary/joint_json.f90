@@ -46,7 +46,11 @@ contains
     call json%put_text(trim(merge('elements', 'surfaces', joint%is_matching)), 'kind')
     call json%put_text(trim(merge('nodes', 'gauss', joint%is_nodal)), 'integration')
     call json%put_integer(joint%num_points, 'points')
-    call json%put_real(sum(joint%area), 'area')
+    if (allocated(joint%parts)) then ! of the complete joint, not that of the last step
+      call json%put_real(sum(joint%parts%area), 'area')
+    else
+      call json%put_real(sum(joint%area), 'area')
+    end if
     if (gap_in_mesh(joint) > 0.0_rk) call json%put_real(gap_in_mesh(joint), 'open_in_mesh')
   end subroutine put_composition
 

@@ -75,12 +75,21 @@ def exceeded_stress(results: Results) -> float:
     stress = np.full(len(results.x), -np.inf)
     for step in results.steps():
         if "S1" in step.envelopes:
-            stress = np.fmax(stress, step.envelopes["S1"])
+            there = nodes_there(results, step.number)
+            stress[there] = np.fmax(stress[there], step.envelopes["S1"][there])
     weights = node_volumes(results)
     weights[~np.isfinite(stress)] = 0.0
     order = np.argsort(-stress)
     passed = np.cumsum(weights[order])
     return float(stress[order[np.searchsorted(passed, SHARE * passed[-1])]])
+
+
+def nodes_there(results: Results, step: int) -> np.ndarray:
+    """The nodes of the solids that are there in a step (positions)."""
+    solids, stage = results.solids, results.stage(step)
+    if stage is not None:
+        solids = solids[stage[solids] > 0]
+    return np.unique(results.connectivity[solids])
 
 
 def node_volumes(results: Results) -> np.ndarray:
