@@ -41,14 +41,13 @@ contains
     call fill_heat(now%heat, n)
     call fill_matrix(now%matrix, n)
     call fill_motion(now%motion, n)
-    allocate (now%joints(2), now%points(1), now%guests(2))
+    allocate (now%joints(2), now%points(1), now%guests(2), now%twins(2))
     do i = 1, 2
       call fill_joint(now%joints(i), n)
     end do
     call fill_points(now%points(1), n)
     call fill_points(points, n)
     allocate (now%guests(2)%item, source=points)
-    allocate (now%twins(2))
     call fill_twins(now%twins(2), n)
   end subroutine make_full_state
 
@@ -274,6 +273,7 @@ contains
     call fill(matrix%number, n)
     matrix%is_elastic = .false.
     matrix%is_symmetric = .false.
+    call fill(matrix%has_all_blocks, n)
     call fill(matrix%increment_size, n)
     allocate (matrix%lost(5))
     call fill(matrix%lost, n)

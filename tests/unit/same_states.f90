@@ -280,6 +280,7 @@ contains
     call compare(log, what//'is_elastic', a%is_elastic, b%is_elastic)
     call compare(log, what//'is_symmetric', a%is_symmetric, b%is_symmetric)
     call compare(log, what//'increment_size', a%increment_size, b%increment_size)
+    call compare(log, what//'has_all_blocks', a%has_all_blocks, b%has_all_blocks)
     call compare(log, what//'lost', a%lost, b%lost)
   end subroutine compare_matrix
 

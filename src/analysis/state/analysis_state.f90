@@ -139,6 +139,7 @@ module analysis_state
     logical :: is_symmetric = .true.
     real(rk) :: increment_size = 0.0_rk !< that K_eff was made for; 0 in static steps [s]
     real(rk), allocatable :: lost(:) !< loss of stiffness [N/m], where it is not elastic
+    logical :: has_all_blocks = .false. !< of the compliance of joints, those left out at first, too
   end type last_matrix
 
   !> One of the two states of an analysis, converged or trial.

@@ -160,6 +160,7 @@ contains
     call file%put('is_symmetric', matrix%is_symmetric)
     call file%put('increment_size', matrix%increment_size)
     call file%put('lost', matrix%lost)
+    call file%put('has_all_blocks', matrix%has_all_blocks)
   end subroutine save_matrix
 
   !> Reads the last matrix.
@@ -172,6 +173,7 @@ contains
     call file%get('increment_size', matrix%increment_size)
     if (allocated(matrix%lost)) deallocate (matrix%lost)
     call file%get('lost', matrix%lost)
+    call file%get('has_all_blocks', matrix%has_all_blocks)
   end subroutine load_matrix
 
   !> Writes the status of the analysis.

@@ -156,7 +156,8 @@ contains
                'model: supports, ties or the procedure of the step are others', system_failed)
   end subroutine reopen_step
 
-  !> Factors the matrix that the loaded increment has ended with.
+  !> Factors the matrix that the loaded increment has ended with, and takes the blocks of the
+  !> compliance of joints that it had.
   subroutine restore_matrix(model, plan, method, now, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -170,9 +171,14 @@ contains
     end if
     associate (solids => method%solids)
       solids%matrix%number = now%matrix%number
-      if (.not. solids%has_inelastic()) return
-      call solids%matrix%restore(model, method%system, solids%values, solids%weight, &
-                                 solids%solver, now%matrix, error)
+      if (solids%has_inelastic()) then
+        call solids%matrix%restore(model, method%system, solids%values, solids%weight, &
+                                   solids%solver, now%matrix, error)
+        if (allocated(error)) return
+      end if
+      if (now%matrix%has_all_blocks) then
+        call solids%solver%take_all_blocks(method%system%matrix%num_free, error)
+      end if
     end associate
   end subroutine restore_matrix
 
@@ -262,6 +268,7 @@ contains
     associate (trial => next%trial, groups => method%system%groups)
       call record_uplift(model, plan%loads, groups, next%when, trial%joints, results%costs)
       call method%solids%matrix%store(trial%matrix)
+      trial%matrix%has_all_blocks = method%solids%solver%has_all_blocks
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
       if (allocated(next%weights)) call follow_error(plan, now, next, results)
       if (method%solids%has_inelastic()) call follow_law(model, plan, method, now, trial, results)

@@ -44,7 +44,7 @@ module condensation
     !> Norm of the residual that solves may leave, for a factor in single precision [N]
     real(rk), private :: admissible = 0.0_rk
   contains
-    procedure :: prepare_matrix, solve_balance
+    procedure :: prepare_matrix, solve_balance, take_all_blocks
     procedure, private :: condense, solve_from, jump_drift, refine, find_base
     procedure, private :: solution_drift, admissible_drift
   end type condensed_equilibrium
@@ -150,6 +150,7 @@ contains
     end associate
     call start_from_blocks(self)
     self%num_passes = 0
+    self%has_all_blocks = .false.
   end subroutine condense
 
   !> Computes C and r from G; factors with the own blocks of another G are forgotten.
@@ -163,18 +164,20 @@ contains
     end associate
   end subroutine start_from_blocks
 
-  !> Computes the blocks of G that were left out. Own blocks change where they were those of a part
-  !> of the structure.
+  !> Computes the blocks of G that were left out. Own blocks change: in their last digits, or all of
+  !> them where they were those of a part of the structure. Factors with the old ones are forgotten.
   subroutine complete(self, num_free, smallest, error)
     class(condensed_equilibrium), intent(inout) :: self
     integer, intent(in) :: num_free
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
+    type(joint_tangent) :: no_tangent
     groups = self%condensed%blocks%groups
     call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
                                                         self%weight), groups, smallest, error)
     if (allocated(error)) return
+    self%condensed%tangent = no_tangent
     if (self%factor%has_patches()) call start_from_blocks(self)
   end subroutine complete
 
@@ -214,8 +217,17 @@ contains
     type(error_type), allocatable, intent(out) :: error
     was_complete = self%condensed%blocks%left_out <= smallest_coupling &
                    .or. self%operator%num_points > most_completed
-    if (.not. was_complete) call complete(self, num_free, 0.0_rk, error)
+    if (.not. was_complete) call self%take_all_blocks(num_free, error)
   end subroutine complete_blocks
+
+  !> Computes all blocks. The state remembers it: a continued run takes the same ones.
+  subroutine take_all_blocks(self, num_free, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    integer, intent(in) :: num_free
+    type(error_type), allocatable, intent(out) :: error
+    call complete(self, num_free, 0.0_rk, error)
+    self%has_all_blocks = .not. allocated(error)
+  end subroutine take_all_blocks
 
   !> Computes the blocks that were left out where many passes have made up for them.
   subroutine replace_passes(self, num_free, error)

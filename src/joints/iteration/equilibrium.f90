@@ -91,6 +91,8 @@ module equilibrium
     type(jump_operator) :: operator !< of the joints
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0
+    !> The compliance of joints has the blocks that were left out at first, until the next matrix
+    logical :: has_all_blocks = .false.
     !> Condition number of the first matrix with all joints closed; 0 without joints
     real(rk) :: condition = 0.0_rk
     type(ledger) :: costs !< a copy that books in the ledger of the run
@@ -98,6 +100,7 @@ module equilibrium
     procedure(prepare_matrix), deferred :: prepare_matrix
     procedure(solve_balance), deferred :: solve_balance
     procedure :: complete_solution, keep_single, solve_with_factor, admissible_residual
+    procedure :: take_all_blocks => take_no_blocks
   end type equilibrium_solver
 
   !> Residual that a solve with a factor in single precision may leave, over the tolerance.
@@ -208,6 +211,13 @@ contains
       if (allocated(error)) return
     end do
   end subroutine solve_with_factor
+
+  !> Computes the blocks of the compliance of joints that are left out, in solvers that leave any.
+  subroutine take_no_blocks(self, num_free, error)
+    class(equilibrium_solver), intent(inout) :: self
+    integer, intent(in) :: num_free
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine take_no_blocks
 
   !> Norm of the residual that a solve may leave.
   real(rk) function admissible_residual(self, balance)
