@@ -37,6 +37,7 @@ set(sources
   law/joint_opening.f90
   law/slip_dissipation.f90
   points/admissible_slip.f90
+  points/attached_solids.f90
   points/element_joint8.f90
   points/joint_parts.f90
   points/joint_points.f90

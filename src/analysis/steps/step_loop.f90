@@ -19,7 +19,7 @@ module step_loop
   use integrator_type, only: integrator
   use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
-  use step_report, only: close_increment, count_increment, report_failure
+  use step_report, only: check_count, close_increment, count_increment, report_failure
   use tangent_choice, only: choose_tangents, tangent
   use user_increments, only: begin_user_increment
   use warming, only: warm
@@ -209,6 +209,8 @@ contains
     next%trial = now
     next%control = now%control
     do while (now%step_time < plan%duration)
+      call check_count(plan, now, error)
+      if (allocated(error)) return
       call try_increment(model, plan, method, now, next, results, error)
       if (allocated(error)) return
       if (next%outcome%has_converged) then
@@ -278,7 +280,7 @@ contains
     if (allocated(error)) return
     call swap(now, next%trial)
     next%control = now%control
-    call close_increment(model, plan, now, results, error)
+    call close_increment(model, now, results, error)
   end subroutine accept
 
   !> What the laws of solids leave open within the increment. A step without estimates forgets the

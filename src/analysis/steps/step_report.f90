@@ -16,7 +16,7 @@ module step_report
   use write_text, only: as_text
   implicit none
   private
-  public :: close_increment, count_increment, report_failure
+  public :: check_count, close_increment, count_increment, report_failure
 
 contains
 
@@ -39,9 +39,8 @@ contains
   end subroutine count_increment
 
   !> Reports a converged increment to the listener.
-  subroutine close_increment(model, plan, now, results, error)
+  subroutine close_increment(model, now, results, error)
     type(problem), intent(in) :: model
-    type(step), intent(in) :: plan
     type(state), intent(in) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
@@ -50,13 +49,18 @@ contains
     call end_user_increment(model, now, results, error)
     if (allocated(error)) return
     call check_slip(model%joints, now%joints, now%total_time, error)
-    if (allocated(error) .or. now%is_last_of_step) return
-    if (now%increment >= plan%max_increments) then
-      call raise(error, "step '"//plan%name//"' has not ended after "// &
-                 count_text(plan%max_increments)//' increments, at '//as_text(now%step_time)// &
-                 ' of '//as_text(plan%duration)//' s: raise INC of *STEP')
-    end if
   end subroutine close_increment
+
+  !> Stops a step that may not have another increment, also where a run is continued there.
+  subroutine check_count(plan, now, error)
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< before the end of the step
+    type(error_type), allocatable, intent(out) :: error
+    if (now%increment < plan%max_increments) return
+    call raise(error, "step '"//plan%name//"' has not ended after "// &
+               count_text(plan%max_increments)//' increments, at '//as_text(now%step_time)// &
+               ' of '//as_text(plan%duration)//' s: raise INC of *STEP')
+  end subroutine check_count
 
   !> Error that names what did not converge, and where.
   subroutine report_failure(model, system, outcome, now, error)

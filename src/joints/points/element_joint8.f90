@@ -5,26 +5,18 @@
 !> Nodal integration (Lobatto) has one point for each pair of nodes, with its tributary area. It
 !> avoids the oscillation of tractions that Gauss points cause in stiff joints.
 module element_joint8
+  use attached_solids, only: solid_list
   use dam_mesh, only: fe_mesh
   use element_catalogue, only: is_solid
   use errors, only: error_type, raise
   use gauss_rules, only: quad_point
-  use growing_lists, only: append, make_room
   use joint_points, only: draw_elements, dam_joint, list_faces, local_axes, share_a_plane
   use kinds, only: rk
   use mesh_faces, only: face_nodes, face_table, face_vector, find_face, insert_face, open_table
   use shape_quad4, only: facet_point
   implicit none
   private
-  public :: build_joint_points, find_attached_solids, attached_solids
-
-  !> Solids whose faces lie on those of JOINT8 elements. Several of one side take the place of each
-  !> other in stages (*MODEL CHANGE).
-  type :: attached_solids
-    integer :: num = 0
-    integer, allocatable :: side(:) !< 2 (element - 1) + 1 for the master face, + 2 for the slave's
-    integer, allocatable :: solid(:) !< position in the mesh
-  end type attached_solids
+  public :: build_joint_points, find_attached_solids
 
   !> Largest distance of two nodes of a pair, over the longer diagonal of the facet.
   real(rk), parameter :: coincidence = 1.0e-4_rk
@@ -73,12 +65,13 @@ contains
     integer, intent(in) :: elements(:) !< positions of JOINT8 elements
     integer, allocatable, intent(out) :: solid(:, :) !< (2, elements) behind master, slave; 0: none
     integer, intent(out) :: side(:) !< 1: normal by nodes 1-2-3-4, -1: against it, 0: contradiction
-    type(attached_solids), intent(out), optional :: all_of_them
+    type(solid_list), intent(out), optional :: all_of_them !< two sides for each element
     type(face_table) :: table
     integer, allocatable :: sense(:, :)
     integer :: e, i, face, number, nodes(4)
 
     allocate (solid(2, size(elements)), sense(2, size(elements)), source=0)
+    if (present(all_of_them)) all_of_them%num_sides = 2*size(elements)
     call open_table(mesh%num_nodes, 2*size(elements), table)
     do e = 1, size(elements)
       call insert_face(table, mesh%nodes(1:4, elements(e)), number)
@@ -91,7 +84,7 @@ contains
         number = find_face(table, nodes)
         do while (number > 0)
           i = (number + 1)/2
-          if (present(all_of_them)) call note_solid(number, e, all_of_them)
+          if (present(all_of_them)) call all_of_them%note(number, e)
           call attach(mesh, e, face, elements(i), solid(2 - mod(number, 2), i), &
                       sense(2 - mod(number, 2), i))
           number = find_face(table, nodes, number)
@@ -103,15 +96,6 @@ contains
     where (sense(1, :)*sense(2, :) > 0) side = 0
     where (sense(1, :) == 0 .and. sense(2, :) == 0) side = 1
   end subroutine find_attached_solids
-
-  !> Adds a solid to the list.
-  pure subroutine note_solid(side, solid, list)
-    integer, intent(in) :: side, solid
-    type(attached_solids), intent(inout) :: list
-    call make_room(list%side, list%num, 1)
-    call append(list%solid, list%num, solid)
-    list%side(list%num) = side
-  end subroutine note_solid
 
   !> Records a solid whose face lies on that of a joint. A face between two solids gives no sense.
   subroutine attach(mesh, element, face, joint_element, solid, sense)

@@ -4,6 +4,7 @@
 !> have their own edges, and faces of absent solids have none.
 module uplift_edges
   use dam_mesh, only: fe_mesh, surface
+  use attached_solids, only: solid_list, sides_there
   use element_joint8, only: find_attached_solids
   use joint_rim, only: area_of_facets, face_rim, find_rim
   use kinds, only: rk
@@ -23,10 +24,10 @@ module uplift_edges
     type(face_rim), allocatable :: rims(:) !< (loads) edges at each load of the reservoir
   end type joint_stage
 
-  !> The complete faces of a joint, and the solids behind them.
+  !> The complete faces of a joint, and the solids behind their facets.
   type :: joint_faces
     integer, allocatable :: slave(:, :), master(:, :) !< (4, facets) nodes
-    integer, allocatable :: behind_slave(:, :), behind_master(:, :) !< (sides, facets) 0: none
+    type(solid_list) :: behind_slave, behind_master
   end type joint_faces
 
 contains
@@ -40,41 +41,53 @@ contains
     integer, intent(out) :: of_step(:) !< (steps)
     type(joint_faces) :: faces
     logical, allocatable :: is_absent(:, :) !< (elements, stages)
-    integer :: s, k
+    integer :: s
     call list_faces(model, j, faces)
     call number_stages(model, relevant_solids(model, faces, lake_name), of_step, is_absent)
     allocate (stages(size(is_absent, 2)))
     do s = 1, size(stages)
-      stages(s)%slave = faces%slave(:, pack([(k, k=1, size(faces%slave, 2))], &
-                                            are_there(faces%behind_slave, is_absent(:, s))))
-      stages(s)%master = faces%master(:, pack([(k, k=1, size(faces%master, 2))], &
-                                              are_there(faces%behind_master, is_absent(:, s))))
+      stages(s)%slave = faces_there(faces%slave, faces%behind_slave, is_absent(:, s))
+      stages(s)%master = faces_there(faces%master, faces%behind_master, is_absent(:, s))
       call list_edges(model, lake_name, is_absent(:, s), stages(s))
     end do
   end subroutine list_stages
 
-  !> Facets of both faces of a joint. JOINT8 elements need the solids on both sides.
+  !> The facets whose solids are there. JOINT8 elements need solids on both sides.
+  pure function faces_there(facets, behind, is_absent) result(there)
+    integer, intent(in) :: facets(:, :) !< (4, facets) nodes
+    type(solid_list), intent(in) :: behind
+    logical, intent(in) :: is_absent(:) !< (elements)
+    integer, allocatable :: there(:, :) !< (4, facets that are there)
+    logical :: is_there(behind%num_sides)
+    integer :: f, sides
+    is_there = sides_there(behind, is_absent)
+    sides = behind%num_sides/max(1, size(facets, 2))
+    there = facets(:, pack([(f, f=1, size(facets, 2))], &
+                           [(all(is_there(sides*(f - 1) + 1:sides*f)), f=1, size(facets, 2))]))
+  end function faces_there
+
+  !> Facets of both faces of a joint.
   subroutine list_faces(model, j, faces)
     type(draft), intent(in) :: model
     integer, intent(in) :: j !< joint
     type(joint_faces), intent(out) :: faces
     type(facet_set) :: facets
-    integer, allocatable :: side(:)
+    integer, allocatable :: solid(:, :), sense(:)
     associate (mesh => model%problem%mesh, request => model%joints(j))
       if (request%slave == 0) then
         faces%slave = mesh%nodes(5:8, request%elements)
         faces%master = mesh%nodes(1:4, request%elements)
-        allocate (side(size(request%elements)))
-        call find_attached_solids(mesh, request%elements, faces%behind_slave, side)
+        allocate (sense(size(request%elements)))
+        call find_attached_solids(mesh, request%elements, solid, sense, faces%behind_slave)
         faces%behind_master = faces%behind_slave
         return
       end if
       call list_surface_facets(mesh, model%problem%surfaces(request%slave), facets)
       faces%slave = facets%node
-      faces%behind_slave = reshape(facets%element, [1, size(facets%element)])
+      faces%behind_slave = solid_list(facets%element)
       call list_surface_facets(mesh, model%problem%surfaces(request%master), facets)
       faces%master = facets%node
-      faces%behind_master = reshape(facets%element, [1, size(facets%element)])
+      faces%behind_master = solid_list(facets%element)
     end associate
   end subroutine list_faces
 
@@ -86,8 +99,8 @@ contains
     logical :: is_relevant(model%problem%mesh%num_elements)
     integer :: i
     is_relevant = .false.
-    is_relevant(pack(faces%behind_slave, faces%behind_slave > 0)) = .true.
-    is_relevant(pack(faces%behind_master, faces%behind_master > 0)) = .true.
+    is_relevant(faces%behind_slave%solid(:faces%behind_slave%num)) = .true.
+    is_relevant(faces%behind_master%solid(:faces%behind_master%num)) = .true.
     do i = 1, model%num_loads
       select type (lake => model%problem%loads(i)%item)
       type is (reservoir_load)
@@ -121,20 +134,6 @@ contains
     end do
     is_absent = model%problem%stages%is_absent(:, first_step)
   end subroutine number_stages
-
-  !> Whether all solids behind facets are there; a facet without a solid is always there.
-  pure function are_there(behind, is_absent) result(is_there)
-    integer, intent(in) :: behind(:, :) !< (sides, facets) solids, 0 for none
-    logical, intent(in) :: is_absent(:) !< (elements)
-    logical :: is_there(size(behind, 2))
-    integer :: f, i
-    is_there = .true.
-    do f = 1, size(behind, 2)
-      do i = 1, size(behind, 1)
-        if (behind(i, f) > 0) is_there(f) = is_there(f) .and. .not. is_absent(behind(i, f))
-      end do
-    end do
-  end function are_there
 
   !> The edges of a stage at each load of a reservoir. The edge upstream is empty where the surface
   !> of the load does not meet the joint, and for other loads.

@@ -4,10 +4,11 @@
 !> those of the complete joint by their slave node and their normal. A Gauss point belongs to one
 !> face, and comes and goes with it.
 module stage_faces
+  use attached_solids, only: sides_there, solid_list
   use coupling_joint, only: lay_node_points
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
-  use element_joint8, only: attached_solids, build_joint_points, find_attached_solids
+  use element_joint8, only: build_joint_points, find_attached_solids
   use errors, only: error_type
   use facet_segments, only: find_segments
   use finish_joints, only: farthest_contact, farthest_gap, followers
@@ -27,7 +28,7 @@ module stage_faces
     integer, allocatable :: element(:) !< (faces) JOINT8 elements
     type(facet_set) :: slave, master
     type(segment_set) :: segments
-    type(attached_solids) :: behind !< the solids of both sides of each face
+    type(solid_list) :: behind !< the solids of both sides of each face
     integer, allocatable :: part(:) !< (faces) which of them come and go together
   end type face_list
 
@@ -97,32 +98,23 @@ contains
       call find_segments(mesh%x, faces%slave, faces%master, faces%segments, cover, &
                          merge(farthest_gap, farthest_contact, request%is_measured))
       faces%num_faces = faces%segments%num_segments
-      faces%behind%num = 2*faces%num_faces
-      faces%behind%side = [(s, s=1, 2*faces%num_faces)]
-      faces%behind%solid = [(faces%slave%element(faces%segments%slave(s)), &
-                             faces%master%element(faces%segments%master(s)), s=1, faces%num_faces)]
+      faces%behind = solid_list( &
+                     [(faces%slave%element(faces%segments%slave(s)), &
+                       faces%master%element(faces%segments%master(s)), s=1, faces%num_faces)])
     end associate
   end subroutine list_faces
 
-  !> Numbers the faces so that those of one part come and go together. Of several solids on one side
-  !> one is enough: a solid may take the place of another.
+  !> Numbers the faces so that those of one part come and go together.
   subroutine number_parts(is_absent, faces, parts)
     logical, intent(in) :: is_absent(:, :) !< (elements, steps)
     type(face_list), intent(inout) :: faces
     type(stage_parts), intent(out) :: parts
-    logical, allocatable :: lacks(:, :) !< (faces, steps)
-    logical, allocatable :: has_none(:, :) !< (sides, steps) has solids that are all absent
-    integer :: f, i
-    allocate (has_none(2*faces%num_faces, size(is_absent, 2)), source=.false.)
-    do i = 1, faces%behind%num
-      has_none(faces%behind%side(i), :) = .true.
+    logical :: lacks(faces%num_faces, size(is_absent, 2)), is_there(2*faces%num_faces)
+    integer :: f, s
+    do s = 1, size(is_absent, 2)
+      is_there = sides_there(faces%behind, is_absent(:, s))
+      lacks(:, s) = .not. (is_there(1::2) .and. is_there(2::2))
     end do
-    do i = 1, faces%behind%num
-      associate (side => faces%behind%side(i), solid => faces%behind%solid(i))
-        has_none(side, :) = has_none(side, :) .and. is_absent(solid, :)
-      end associate
-    end do
-    lacks = has_none(1::2, :) .or. has_none(2::2, :)
     faces%part = classes_of(lacks)
     allocate (parts%is_there(maxval([0, faces%part]), size(is_absent, 2)))
     do f = 1, size(faces%part)
