@@ -92,18 +92,18 @@ contains
   function list_procedures() result(text)
     character(:), allocatable :: text
     type(entry), allocatable :: list(:)
-    character(:), allocatable :: names(:)
-    integer :: i, num
+    logical, allocatable :: is_first(:) ! of its name
+    integer :: i
     list = all_integrators()
-    allocate (character(len(list(1)%procedure%name)) :: names(0))
+    allocate (is_first(size(list)))
     do i = 1, size(list)
-      if (.not. any(names == list(i)%procedure%name)) names = [names, list(i)%procedure%name]
+      is_first(i) = .not. any(list(:i - 1)%procedure%name == list(i)%procedure%name)
     end do
-    num = size(names)
-    text = '*'//trim(names(1))
-    do i = 2, num
-      if (i < num) text = text//', *'//trim(names(i))
-      if (i == num) text = text//' or *'//trim(names(i))
+    text = '*'//trim(list(1)%procedure%name)
+    do i = 2, size(list)
+      if (.not. is_first(i)) cycle
+      text = text//trim(merge(', *  ', ' or *', any(is_first(i + 1:))))// &
+             trim(list(i)%procedure%name)
     end do
   end function list_procedures
 

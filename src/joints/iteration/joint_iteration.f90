@@ -284,7 +284,8 @@ contains
   !> Least force that residuals are divided by.
   pure real(rk) function smallest_force(field)
     type(joint_field), intent(in) :: field
-    smallest_force = max(field%start_force, smallest_share*field%bulk_force, tiny(1.0_rk)) ! [N]
+    smallest_force = max(field%start_force, smallest_share*field%bulk_force, &
+                         sqrt(tiny(1.0_rk))) ! [N]; quotients by it stay finite
   end function smallest_force
 
   !> Remaining correction of the jumps over their increment; decides convergence. Where contact

@@ -65,7 +65,7 @@ contains
     new%is_velocity = this%word('TYPE') == 'VELOCITY'
     do i = 1, used
       new(i)%node = all_nodes(i)
-      new(i)%dof = max(1, min(3, nint(this%real_at(line_of_node(i), 2))))
+      new(i)%dof = nint(max(1.0_rk, min(3.0_rk, this%real_at(line_of_node(i), 2))))
       new(i)%value = this%real_at(line_of_node(i), 3)
     end do
     model%problem%initial_values = [model%problem%initial_values, new]

@@ -380,9 +380,10 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     real(rk), parameter :: round_off = 1.0e-9_rk ! of the quotient, far above its own
     real(rk) :: num_needed
-    num_needed = model%now%duration/model%now%first_increment
+    if (model%now%first_increment <= 0.0_rk) return ! reported
+    num_needed = model%now%duration/max(model%now%first_increment, 1.0e-9_rk*model%now%duration)
     if (num_needed <= (1.0_rk + round_off)*model%now%max_increments) return
-    num_needed = real(ceiling((1.0_rk - round_off)*min(num_needed, 1.0e9_rk)), rk)
+    num_needed = real(ceiling((1.0_rk - round_off)*num_needed), rk)
     call this%warn(faults, 'the step needs '//as_text(num_needed)//' increments, but *STEP, '// &
                    'INC='// &
                    as_text(model%now%max_increments)//' ends the step earlier')

@@ -16,8 +16,8 @@ module stress_recovery
   use thermal_recovery, only: add_expansion, take_thermal
   implicit none
   private
-  public :: recovery_plan, make_recovery_plan, recover_points, recover_some, copy_solid, max_points
-  public :: recover_expansions
+  public :: recovery_plan, make_recovery_plan, recover_points, recover_some, copy_stresses
+  public :: max_points, recover_expansions
   public :: operators_of_block, motion_of_element, fewest_for_threads
 
   integer, parameter :: max_points = 8 !< most integration points of an element
@@ -205,38 +205,65 @@ contains
     end do
   end subroutine recover_some
 
-  !> Strain, stress or both of one block, or of a part of it.
+  !> Strain, stress or both of one block, or of a part of it. An absent array is not passed on: its
+  !> bounds are undefined.
   subroutine recover_part(model, plan, part, now, strain, stress)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     type(state), intent(in) :: now
     real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
-    integer :: k
-    if (.not. part%is_inelastic) then
-      call recover_block(model, plan, part, now, strain, stress)
-      return
+    real(rk), allocatable :: found(:, :, :)
+    real(rk) :: d(6, 6)
+    integer :: k, q
+    if (part%is_inelastic) then
+      if (present(strain)) call copy_strains(plan, now, part%solids, strain)
+      if (present(stress)) call copy_stresses(plan, now, part%solids, stress)
+    else
+      call model%materials(part%material)%law%elastic_stiffness(d)
+      call find_strains(model, plan, part, now, d, found)
+      do k = 1, size(part%solids)
+        if (present(strain)) strain(:, :size(found, 2), part%solids(k)) = found(:, :, k)
+        if (.not. present(stress)) cycle
+        do q = 1, size(found, 2)
+          stress(:, q, part%solids(k)) = matmul(d, found(:, q, k))
+        end do
+      end do
     end if
-    do k = 1, size(part%solids)
-      call copy_solid(plan, now, part%solids(k), strain, stress)
-    end do
     if (present(strain)) call add_expansions(model, plan, part, now, strain)
   end subroutine recover_part
 
-  !> Strain, stress or both of one solid with states.
-  subroutine copy_solid(plan, now, solid, strain, stress)
+  !> Strains of solids with states.
+  subroutine copy_strains(plan, now, solids, strain)
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
-    integer, intent(in) :: solid !< of an inelastic block
-    real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
-    integer :: n, before
-    n = plan%num_points(solid)
-    before = plan%points_before(solid)
-    associate (points => now%points(plan%inelastic_block(solid)))
-      if (present(strain)) strain(:, :n, solid) = points%strain(:, before + 1:before + n)
-      if (present(stress)) stress(:, :n, solid) = points%stress(:, before + 1:before + n)
-    end associate
-  end subroutine copy_solid
+    integer, intent(in) :: solids(:) !< of inelastic blocks
+    real(rk), intent(inout) :: strain(:, :, :)
+    integer :: k, n, before
+    do k = 1, size(solids)
+      n = plan%num_points(solids(k))
+      before = plan%points_before(solids(k))
+      associate (points => now%points(plan%inelastic_block(solids(k))))
+        strain(:, :n, solids(k)) = points%strain(:, before + 1:before + n)
+      end associate
+    end do
+  end subroutine copy_strains
+
+  !> Stresses of solids with states.
+  subroutine copy_stresses(plan, now, solids, stress)
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    integer, intent(in) :: solids(:) !< of inelastic blocks
+    real(rk), intent(inout) :: stress(:, :, :)
+    integer :: k, n, before
+    do k = 1, size(solids)
+      n = plan%num_points(solids(k))
+      before = plan%points_before(solids(k))
+      associate (points => now%points(plan%inelastic_block(solids(k))))
+        stress(:, :n, solids(k)) = points%stress(:, before + 1:before + n)
+      end associate
+    end do
+  end subroutine copy_stresses
 
   !> Adds the expansions to the strains of one block.
   subroutine add_expansions(model, plan, part, now, strain)
@@ -270,35 +297,24 @@ contains
     !$omp end parallel do
   end subroutine recover_expansions
 
-  !> Strain, stress or both of one elastic block.
-  subroutine recover_block(model, plan, part, now, strain, stress)
+  !> Strains of one elastic block that give stress.
+  subroutine find_strains(model, plan, part, now, d, strain)
     type(problem), intent(in) :: model
     type(recovery_plan), intent(in) :: plan
     type(element_block), intent(in) :: part
     type(state), intent(in) :: now
-    real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
-    real(rk), allocatable :: found(:, :, :)
-    real(rk) :: d(6, 6)
-    integer :: k, q, n, points
-    n = size(part%solids)
-    points = plan%formulations(part%formulation)%item%num_points
-    allocate (found(6, points, n))
-    call model%materials(part%material)%law%elastic_stiffness(d)
-    if (plan%formulations(part%formulation)%item%has_plain_strain) then
-      call find_plain_strains(model, plan, part, now, found)
-    else
-      call find_general_strains(model, plan, part, now, d, found)
-    end if
-    call take_thermal(model, now, plan%element_of_solid(part%solids), found)
-    do k = 1, n
-      if (present(strain)) strain(:, :points, part%solids(k)) = found(:, :, k)
-      if (.not. present(stress)) cycle
-      do q = 1, points
-        stress(:, q, part%solids(k)) = matmul(d, found(:, q, k))
-      end do
-    end do
-    if (present(strain)) call add_expansions(model, plan, part, now, strain)
-  end subroutine recover_block
+    real(rk), intent(in) :: d(6, 6) !< [Pa]
+    real(rk), allocatable, intent(out) :: strain(:, :, :) !< (6, points, solids of the block)
+    associate (formulation => plan%formulations(part%formulation)%item)
+      allocate (strain(6, formulation%num_points, size(part%solids)))
+      if (formulation%has_plain_strain) then
+        call find_plain_strains(model, plan, part, now, strain)
+      else
+        call find_general_strains(model, plan, part, now, d, strain)
+      end if
+    end associate
+    call take_thermal(model, now, plan%element_of_solid(part%solids), strain)
+  end subroutine find_strains
 
   !> Strains of elements whose strain is the symmetric gradient.
   subroutine find_plain_strains(model, plan, part, now, strain)
