@@ -31,3 +31,23 @@ def test_the_first_increment_is_at_most_the_largest(keyway, line, increments):
 def test_names_of_supports_hold_their_directions(name, held):
     """The tools read them as the program does."""
     assert support_of(f"SIDE, {name}") == ("SIDE", held, 0.0)
+
+
+def test_components_ask_for_their_field(keyway):
+    """deck.md: a field may be a component, U3 or S11; so may those of the other fields."""
+    prints = "*NODE PRINT, NSET=TOP\nU3, RF1\n*EL PRINT, ELSET=DAM\nLE22, SP3\n*EL FILE\nE33\n"
+    run = keyway(BLOCK.replace("*END STEP", prints + "*END STEP"))
+    assert run.json["ignored_input"] == []
+    assert {"U1", "U2", "U3", "RF1", "RF2", "RF3"} <= set(run.csv("node_TOP"))
+    written = set(run.csv("el_DAM"))
+    assert {"E11", "E22", "E33", "E12", "E13", "E23", "SP1", "SP2", "SP3"} <= written
+    assert not written & {"S11", "U1"}
+    assert list(run.folder.glob("job_vtk/*.vtu"))
+
+
+def test_components_of_fields_that_are_missing_get_their_warning(keyway):
+    prints = "*NODE PRINT, NSET=TOP\nU3, V3\n*EL PRINT, ELSET=DAM\nS33, PE12, SDV1, THE33\n"
+    run = keyway(BLOCK.replace("*END STEP", prints + "*END STEP"))
+    warnings = "\n".join(run.json["warnings"])
+    for said in ("there is no V:", "has PE;", "has SDV;", "THE is not written"):
+        assert said in warnings

@@ -1,5 +1,6 @@
 !> Warns of cards of a step that have no effect in this step nor in a later one.
 module check_idle_steps
+  use card_fields, only: field_of_word
   use card_reader, only: field_reader
   use deck_card, only: card
   use deck_scan, only: is_keyword, steps_of_cards
@@ -258,7 +259,7 @@ contains
     end if
     if (now%any_inertia .or. index(this%spec%name, 'NODE') == 0) return
     do while (reader%advance(this))
-      name = this%word_at(reader%line, reader%field)
+      name = field_of_word(this%word_at(reader%line, reader%field))
       if (name /= 'V' .and. name /= 'A') cycle
       call this%warn(faults, 'there is no '//name//no_dynamic)
       return

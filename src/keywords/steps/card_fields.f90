@@ -9,7 +9,7 @@ module card_fields
   use step_plan, only: field_name_length
   implicit none
   private
-  public :: take_fields
+  public :: take_fields, field_of_word
 
   !> A word of another program and the field that holds it.
   type :: synonym
@@ -19,18 +19,16 @@ module card_fields
 
   !> Strains are small here: logarithmic (LE) and nominal ones (NE) are E.
   type(synonym), parameter :: synonyms(*) = [ &
-                              synonym('U1', 'U'), synonym('U2', 'U'), synonym('U3', 'U'), &
-                              synonym('UT', 'U'), synonym('V1', 'V'), synonym('V2', 'V'), &
-                              synonym('V3', 'V'), synonym('VT', 'V'), synonym('A1', 'A'), &
-                              synonym('A2', 'A'), synonym('A3', 'A'), synonym('AT', 'A'), &
-                              synonym('RF1', 'RF'), synonym('RF2', 'RF'), synonym('RF3', 'RF'), &
-                              synonym('RT', 'RF'), synonym('S11', 'S'), synonym('S22', 'S'), &
-                              synonym('S33', 'S'), synonym('S12', 'S'), synonym('S13', 'S'), &
-                              synonym('S23', 'S'), synonym('LE', 'E'), synonym('NE', 'E'), &
+                              synonym('UT', 'U'), synonym('VT', 'V'), synonym('AT', 'A'), &
+                              synonym('RT', 'RF'), synonym('LE', 'E'), synonym('NE', 'E'), &
                               synonym('MAXPS', 'SP'), synonym('COPEN', 'OPENING'), &
                               synonym('CDIS', 'OPENING'), synonym('CDISP', 'OPENING'), &
                               synonym('NT', 'TEMP'), synonym('NT11', 'TEMP'), &
                               synonym('SENER', 'ENER')]
+
+  character(*), parameter :: vectors = 'U | V | A | RF | SP', axes = '1 | 2 | 3'
+  character(*), parameter :: tensors = 'S | E | LE | NE | THE | PE', &
+                             planes = '11 | 22 | 33 | 12 | 13 | 23'
 
   !> A word of another program that is no field, and what to take for it.
   type :: missing_field
@@ -60,11 +58,11 @@ contains
     do while (reader%advance(this))
       if (this%is_empty_at(reader%line, reader%field)) cycle
       word = this%word_at(reader%line, reader%field)
-      if (.not. is_among(own_word(word), choices)) then
+      if (.not. is_among(field_of_word(word), choices)) then
         unknown = unknown//', '//word
         if (len(nearest) == 0) nearest = way_out(word, choices)
-      else if (.not. any(fields == own_word(word))) then
-        fields = [character(field_name_length) :: fields, own_word(word)]
+      else if (.not. any(fields == field_of_word(word))) then
+        fields = [character(field_name_length) :: fields, field_of_word(word)]
       end if
     end do
     if (len(unknown) > 0) then
@@ -90,16 +88,25 @@ contains
     if (len(text) > 0) text = "; did you mean '"//text//"'?"
   end function way_out
 
-  !> Our word for a field.
-  pure function own_word(word) result(own)
+  !> Our word for a field, or for the field of a component: E for LE11.
+  pure function field_of_word(word) result(own)
     character(*), intent(in) :: word
     character(:), allocatable :: own
-    integer :: i
+    integer :: i, last
     own = word
+    last = verify(word, '0123456789', back=.true.)
+    associate (stem => word(:last), component => word(last + 1:))
+      if (is_among(stem, vectors) .and. is_among(component, axes)) own = stem
+      if (is_among(stem, tensors) .and. is_among(component, planes)) own = stem
+      if (stem == 'SDV') own = stem
+    end associate
     do i = 1, size(synonyms)
-      if (synonyms(i)%word == word) own = trim(synonyms(i)%field)
+      if (synonyms(i)%word == own) then
+        own = trim(synonyms(i)%field)
+        return
+      end if
     end do
-  end function own_word
+  end function field_of_word
 
   !> Whether a word is one of the choices.
   pure logical function is_among(word, choices)

@@ -1,5 +1,6 @@
 !> Warns of requested fields that the model does not have, at the first request of each field.
 module check_requests
+  use card_fields, only: field_of_word
   use card_reader, only: field_reader
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
@@ -33,7 +34,7 @@ contains
         if (.not. any(request%keyword == requests)) cycle
         reader = field_reader()
         do while (reader%advance(request))
-          name = request%word_at(reader%line, reader%field)
+          name = field_of_word(request%word_at(reader%line, reader%field))
           f = find_field(table, name)
           if (is_of_points(request)) f = max(f, find_field(table, name//ending_of_points))
           if (f == 0) cycle

@@ -26,6 +26,7 @@ module history_file
     character(:), allocatable :: path
     real(rk), allocatable :: values(:)
     integer, allocatable :: line(:) !< line of each value
+    integer :: open_line = 0 !< first line with an odd number of values and a comma at its end
   end type number_file
 
 contains
@@ -101,13 +102,21 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(number_file), intent(inout) :: numbers
     integer, intent(inout) :: used !< entries in use
-    integer :: first, last
+    integer :: first, last, num_before, most
     logical :: is_number
+    num_before = used
     if (index('*#', line(1:min(1, len(line)))) > 0 .and. len(line) > 0) return
     last = 0
     do
       first = verify(line(last + 1:), separators) + last
-      if (first == last) return
+      if (first == last) exit
+      most = merge(0, 1, used == num_before)
+      if (num_commas(line(last + 1:first - 1)) > most) then
+        call faults%add(severity_error, spot_in_file(numbers%path, number, first, first, line, &
+                                                     spot), &
+                        'an empty field before this number', 'a number between two commas')
+        return
+      end if
       last = scan(line(first:), separators) + first - 2
       if (last < first) last = len(line)
       call make_room(numbers%values, used, 1)
@@ -125,7 +134,16 @@ contains
       used = used + 1
       numbers%line(used) = number
     end do
+    if (num_commas(line(last + 1:)) == 0 .or. mod(used - num_before, 2) == 0) return
+    if (numbers%open_line == 0) numbers%open_line = number
   end subroutine add_line
+
+  !> Commas and semicolons between two numbers, or at the end of a line.
+  pure integer function num_commas(text)
+    character(*), intent(in) :: text
+    integer :: i
+    num_commas = count([(scan(text(i:i), ',;') > 0, i=1, len(text))])
+  end function num_commas
 
   !> Whether a word is what follows a decimal comma, as in 0,012: no number of its own begins so.
   pure logical function is_fraction(line, first, last)

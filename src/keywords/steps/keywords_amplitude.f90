@@ -119,10 +119,17 @@ contains
     used = 0
     do line = 1, this%num_lines
       do i = 1, this%num_fields(line)
+        if (this%is_empty_at(line, i)) then
+          call this%fault_at(faults, line, i, 'found an empty field', 'a number')
+          return
+        end if
         used = used + 1
         numbers%values(used) = this%real_at(line, i)
         numbers%line(used) = line
       end do
+      if (mod(this%num_fields(line), 2) == 1 .and. numbers%open_line == 0) then
+        if (this%ends_in_comma(line)) numbers%open_line = line
+      end if
     end do
   end subroutine collect_numbers
 
@@ -203,7 +210,11 @@ contains
     type(diagnostic_list), intent(inout) :: faults
     type(amplitude), intent(inout) :: new
     integer :: i
-    if (mod(size(numbers%values), 2) == 1) then
+    if (numbers%open_line > 0) then
+      call fault_number(this, numbers, findloc(numbers%line, numbers%open_line, 1, back=.true.), &
+                        'a time without a value', 'pairs of time and value', faults)
+      return
+    else if (mod(size(numbers%values), 2) == 1) then
       call this%fault(faults, 'an odd number of values', 'pairs of time and value')
       return
     end if
@@ -211,31 +222,29 @@ contains
     new%value = numbers%values(2::2)*this%real('SCALE')
     do i = 2, size(new%time)
       if (new%time(i) > new%time(i - 1)) cycle
-      call fault_time(this, numbers, 2*i - 1, faults)
+      call fault_number(this, numbers, 2*i - 1, 'time '//as_text(new%time(i))//' after '// &
+                        as_text(new%time(i - 1)), 'times that ascend', faults)
       return
     end do
   end subroutine shape_pairs
 
-  !> Fault of a time that does not ascend; `number` is its position among the numbers.
-  subroutine fault_time(this, numbers, number, faults)
+  !> Fault of a number of the card or of its file; `number` is its position among the numbers.
+  subroutine fault_number(this, numbers, number, problem, expected, faults)
     type(card), intent(in) :: this
     type(number_file), intent(in) :: numbers
     integer, intent(in) :: number
+    character(*), intent(in) :: problem, expected
     type(diagnostic_list), intent(inout) :: faults
-    character(:), allocatable :: problem
     type(place) :: spot
     integer :: line
-    problem = 'time '//as_text(numbers%values(number))//' after '// &
-              as_text(numbers%values(number - 2))
     line = numbers%line(number)
     if (this%has('INPUT')) then
       spot%file = numbers%path
       spot%line = line
       spot%keyword = this%keyword
-      call faults%add(severity_error, spot, problem, 'times that ascend')
+      call faults%add(severity_error, spot, problem, expected)
     else
-      call this%fault_at(faults, line, number - count(numbers%line < line), problem, &
-                         'times that ascend')
+      call this%fault_at(faults, line, number - count(numbers%line < line), problem, expected)
     end if
-  end subroutine fault_time
+  end subroutine fault_number
 end module keywords_amplitude
