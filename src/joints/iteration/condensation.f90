@@ -35,6 +35,7 @@ module condensation
     type(condensed_joints) :: condensed
     type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
     integer, private :: num_held = 0 !< prescribed unknowns
+    logical, private :: takes_all_blocks = .false. !< of the next matrix
     integer, private :: num_passes = 0 !< beyond the first of a solve, in time, with these blocks
     !> (3, points) excess traction of the last solution [Pa]
     real(rk), allocatable, private :: excess(:, :)
@@ -151,6 +152,8 @@ contains
     call start_from_blocks(self)
     self%num_passes = 0
     self%has_all_blocks = .false.
+    if (self%takes_all_blocks) call self%take_all_blocks(matrix%num_free, error)
+    self%takes_all_blocks = .false.
   end subroutine condense
 
   !> Computes C and r from G; factors with the own blocks of another G are forgotten.
@@ -220,11 +223,14 @@ contains
     if (.not. was_complete) call self%take_all_blocks(num_free, error)
   end subroutine complete_blocks
 
-  !> Computes all blocks. The state remembers it: a continued run takes the same ones.
+  !> Computes all blocks, at once or with the first matrix. The state remembers it: a continued run
+  !> takes the same ones.
   subroutine take_all_blocks(self, num_free, error)
     class(condensed_equilibrium), intent(inout) :: self
     integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
+    self%takes_all_blocks = .not. allocated(self%condensed%k_ref)
+    if (self%takes_all_blocks) return
     call complete(self, num_free, 0.0_rk, error)
     self%has_all_blocks = .not. allocated(error)
   end subroutine take_all_blocks
