@@ -19,6 +19,8 @@ module card_digests
     character(64) :: digest = ''
   end type card_digest
 
+  character, parameter :: nl = new_line('a')
+
 contains
 
   !> The digests of all cards. Comments, blank lines and blanks at the end of a line do not count.
@@ -52,12 +54,30 @@ contains
     character(64) :: digest
     character(:), allocatable :: ends
     integer, allocatable :: last(:)
+    if (this%keyword == 'STEP') then
+      digest = digest_of_text(step_text(this))
+      return
+    end if
     last = this%lines%rows%last ! gfortran 12 would transfer whole rows
     ends = repeat(' ', storage_size(last)/8*size(last))
     ends = transfer(last, ends)
     digest = digest_of_text(digest_of_text(this%lines%body)//digest_of_text(ends)// &
                             digest_of_file(input_of(this)))
   end function digest_of
+
+  !> What acts on the state in *STEP: neither INC, which may be raised where a run has stopped at it,
+  !> nor the lines of text.
+  pure function step_text(this) result(text)
+    type(card), intent(in) :: this
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(this%spec%parameters)
+      associate (name => this%spec%parameters(i)%name)
+        if (name /= 'INC' .and. this%has(name)) text = text//name//'='//this%word(name)//nl
+      end associate
+    end do
+  end function step_text
 
   !> Path of the file that INPUT names, '' for none.
   function input_of(this) result(path)

@@ -113,3 +113,20 @@ def test_killed_run_leaves_whole_files(program_path: Path, tmp_path: Path):
         increments = list(file["steps/0001/increments"])
         assert len(increments) > 50
         assert file[f"steps/0001/increments/{increments[-2]}/U"].shape == (8, 3)
+
+
+def test_a_run_at_its_last_increment_is_continued(keyway):
+    """INC is the number of increments of the step, however often the run is continued; with a
+    larger INC the step goes on as if it had not stopped."""
+    deck = DECK.format(increments=25, duration=0.4, frequency=1)
+    deck = deck.replace("*NODE PRINT", "*RESTART, WRITE, FREQUENCY=5\n*NODE PRINT")
+    stopped = keyway(deck, code=1)
+    again = keyway(deck, "--continue", code=1)
+    assert again.json["message"] == stopped.json["message"]
+    assert list(again.csv("node_HEAD")["increment"]) == list(range(26))
+    ended = keyway(deck.replace("INC=25", "INC=40"), "--continue")
+    whole = keyway(deck.replace("INC=25", "INC=40"), name="whole")
+    assert list(ended.csv("node_HEAD")["increment"]) == list(range(41))
+    assert list(ended.csv("node_HEAD")["U1"]) == list(whole.csv("node_HEAD")["U1"])
+    other = keyway(deck.replace("NAME=SWING", "NAME=SWAY"), "--continue", code=2)
+    assert "*STEP is new or not as it was" in other.stderr

@@ -202,9 +202,8 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call raise(error, 'keyway: --continue: the checkpoint does not belong to this run: '// &
                reason//nl//'Only steps after the one of the checkpoint may change (not their '// &
-               '*MODEL CHANGE, *GROUT and *TEMPERATURE), and amplitudes, sets and surfaces of '// &
-               'new names may be added. Without --continue the analysis starts from the '// &
-               'beginning', &
-               deck_is_wrong)
+               '*MODEL CHANGE, *GROUT and *TEMPERATURE) and INC of *STEP, and amplitudes, sets '// &
+               'and surfaces of new names may be added. Without --continue the analysis starts '// &
+               'from the beginning', deck_is_wrong)
   end subroutine refuse
 end module checkpoint_identity
