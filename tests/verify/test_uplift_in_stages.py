@@ -17,6 +17,7 @@ from tied_blocks import CORNERS, Blocks, node_set
 HEAD = 1000.0 * 9.81  # of a metre of water [Pa]
 ROUND_OFF = {"rel": 1e-8}  # of heights and of the residual
 KINDS = pytest.mark.parametrize("kind", ["elements", "matching", "different"])
+POINTS = pytest.mark.parametrize("points", ["NODES", "GAUSS"])
 LAKE = "*RESERVOIR, NAME=LAKE, SURFACE={}, LEVEL={}, BED=0.\n"
 OUTPUT = "*NODE PRINT, NSET=DAM\nRF\n*NODE FILE\nU, OPENING\n"
 
@@ -87,10 +88,11 @@ def assert_diagram(
 
 
 @KINDS
-def test_the_diagram_ends_where_the_solids_end(keyway, kind):
+@POINTS
+def test_the_diagram_ends_where_the_solids_end(keyway, kind, points):
     """B comes, leaves and comes again; the last step moves nothing but the level."""
     run = keyway(
-        base(kind)
+        base(kind, integration=points)
         + step(remove("B") + LAKE.format("A_X0", 2.0) + OUTPUT)
         + step(add("B"))
         + step(remove("B"))
@@ -104,10 +106,11 @@ def test_the_diagram_ends_where_the_solids_end(keyway, kind):
 
 
 @KINDS
-def test_a_reservoir_at_an_interim_face(keyway, kind):
+@POINTS
+def test_a_reservoir_at_an_interim_face(keyway, kind, points):
     """B is built first, with the water at its face towards A; then A comes."""
     run = keyway(
-        base(kind)
+        base(kind, integration=points)
         + step(remove("A") + LAKE.format("B_X0", 1.0) + OUTPUT)
         + step(add("A") + LAKE.format("A_X0", 2.0))
     )
@@ -116,11 +119,12 @@ def test_a_reservoir_at_an_interim_face(keyway, kind):
 
 
 @KINDS
-def test_tail_water_at_an_interim_face(keyway, kind):
+@POINTS
+def test_tail_water_at_an_interim_face(keyway, kind, points):
     """The river stands at A while B is absent, then at B."""
     river = LAKE.replace("NAME=LAKE", "NAME=RIVER")
     run = keyway(
-        base(kind, "TENSILE STRENGTH=1e9, TAIL WATER=RIVER")
+        base(kind, "TENSILE STRENGTH=1e9, TAIL WATER=RIVER", points)
         + step(remove("B") + LAKE.format("A_X0", 2.0) + river.format("A_X1", 0.5) + OUTPUT)
         + step(add("B") + river.format("B_X1", 1.0))
         + step(remove("B") + river.format("A_X1", 0.25))
@@ -131,13 +135,14 @@ def test_tail_water_at_an_interim_face(keyway, kind):
 
 
 @KINDS
+@POINTS
 @pytest.mark.parametrize("first", ["A", "B"])
-def test_water_in_an_open_joint_of_an_unfinished_base(keyway, kind, first):
+def test_water_in_an_open_joint_of_an_unfinished_base(keyway, kind, points, first):
     """A gap leaves all points open: the full head acts under the solids that are there, from the
     edge where the reservoir stands."""
     other = "B" if first == "A" else "A"
     run = keyway(
-        base(kind, "GAP=0.01, PROFILE=OPEN")
+        base(kind, "GAP=0.01, PROFILE=OPEN", points)
         + step(remove(other) + LAKE.format(f"{first}_X0", 1.0) + OUTPUT)
         + step(add(other) + LAKE.format("A_X0", 2.0))
     )
