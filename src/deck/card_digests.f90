@@ -65,8 +65,8 @@ contains
                             digest_of_file(input_of(this)))
   end function digest_of
 
-  !> What acts on the state in *STEP: not INC, which may be raised where a run has stopped at it, and
-  !> not the lines of text.
+  !> What acts on the state in *STEP: not INC, which may be raised where a run has stopped at it.
+  !> Lines of text do not count.
   pure function step_text(this) result(text)
     type(card), intent(in) :: this
     character(:), allocatable :: text
