@@ -16,7 +16,7 @@ module element_joint8
   use shape_quad4, only: facet_point
   implicit none
   private
-  public :: build_joint_points, find_attached_solids
+  public :: build_joint_points, find_attached_solids, solids_behind
 
   !> Largest distance of two nodes of a pair, over the longer diagonal of the facet.
   real(rk), parameter :: coincidence = 1.0e-4_rk
@@ -96,6 +96,16 @@ contains
     where (sense(1, :)*sense(2, :) > 0) side = 0
     where (sense(1, :) == 0 .and. sense(2, :) == 0) side = 1
   end subroutine find_attached_solids
+
+  !> The solids behind both sides of JOINT8 elements; the sides of an element follow each other.
+  function solids_behind(mesh, elements) result(list)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(in) :: elements(:) !< positions of JOINT8 elements
+    type(solid_list) :: list
+    integer, allocatable :: solid(:, :)
+    integer :: side(size(elements))
+    call find_attached_solids(mesh, elements, solid, side, list)
+  end function solids_behind
 
   !> Records a solid whose face lies on that of a joint. A face between two solids gives no sense.
   subroutine attach(mesh, element, face, joint_element, solid, sense)

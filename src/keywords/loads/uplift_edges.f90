@@ -5,7 +5,7 @@
 module uplift_edges
   use dam_mesh, only: fe_mesh, surface
   use attached_solids, only: solid_list, sides_there
-  use element_joint8, only: find_attached_solids
+  use element_joint8, only: solids_behind
   use joint_rim, only: area_of_facets, face_rim, find_rim
   use kinds, only: rk
   use load_reservoir, only: reservoir_load
@@ -72,13 +72,11 @@ contains
     integer, intent(in) :: j !< joint
     type(joint_faces), intent(out) :: faces
     type(facet_set) :: facets
-    integer, allocatable :: solid(:, :), sense(:)
     associate (mesh => model%problem%mesh, request => model%joints(j))
       if (request%slave == 0) then
         faces%slave = mesh%nodes(5:8, request%elements)
         faces%master = mesh%nodes(1:4, request%elements)
-        allocate (sense(size(request%elements)))
-        call find_attached_solids(mesh, request%elements, solid, sense, faces%behind_slave)
+        faces%behind_slave = solids_behind(mesh, request%elements)
         faces%behind_master = faces%behind_slave
         return
       end if

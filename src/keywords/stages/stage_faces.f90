@@ -8,7 +8,7 @@ module stage_faces
   use coupling_joint, only: lay_node_points
   use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
-  use element_joint8, only: build_joint_points, find_attached_solids
+  use element_joint8, only: build_joint_points, solids_behind
   use errors, only: error_type
   use facet_segments, only: find_segments
   use finish_joints, only: farthest_contact, farthest_gap, followers
@@ -83,14 +83,12 @@ contains
     integer, intent(in) :: number !< of the joint
     type(face_list), intent(out) :: faces
     type(surface_cover) :: cover
-    integer, allocatable :: solid(:, :), sense(:)
     integer :: s
     associate (request => model%joints(number), mesh => model%problem%mesh)
       if (request%slave == 0) then
         faces%element = request%elements
         faces%num_faces = size(faces%element)
-        allocate (sense(faces%num_faces))
-        call find_attached_solids(mesh, faces%element, solid, sense, faces%behind)
+        faces%behind = solids_behind(mesh, faces%element)
         return
       end if
       call list_surface_facets(mesh, model%problem%surfaces(request%slave), faces%slave)
