@@ -8,8 +8,11 @@ module stage_entry
   use errors, only: error_type
   use joint_parts, only: show_parts
   use kinds, only: rk
+  use inelastic_blocks, only: inelastic_block
   use material_law, only: start_points
-  use analysis_state, only: state
+  use material_points, only: created_energy, crushing_energy, fracture_energy, num_energies, &
+                             point_state
+  use analysis_state, only: energy_balance, state
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
@@ -114,7 +117,8 @@ contains
     call heat_points(model, now)
   end subroutine move_elements
 
-  !> The points of inelastic elements that come or go start anew.
+  !> The points of inelastic elements that come or go start anew. What they have dissipated remains
+  !> in the balance.
   subroutine renew_points(model, was_absent, now)
     type(problem), intent(in) :: model
     logical, intent(in) :: was_absent(:) !< (elements)
@@ -124,9 +128,21 @@ contains
       associate (part => model%inelastic(i))
         if (was_absent(part%elements(1)) .eqv. &
             .not. element_is_there(model%mesh, part%elements(1))) cycle
+        call keep_dissipated(part, now%points(i), now%energy)
         call start_points(model%materials(part%material)%law, part%points, now%points(i))
       end associate
     end do
   end subroutine renew_points
 
+  !> Adds the energies that a block has dissipated so far to those of solids that have left.
+  pure subroutine keep_dissipated(part, own, energy)
+    type(inelastic_block), intent(in) :: part
+    type(point_state), intent(in) :: own
+    type(energy_balance), intent(inout) :: energy
+    real(rk) :: spent(num_energies)
+    spent = matmul(own%energy, reshape(part%weight, [size(part%weight)]))
+    energy%left_cracking = energy%left_cracking + spent(fracture_energy)
+    energy%left_crushing = energy%left_crushing + spent(crushing_energy)
+    energy%left_created = energy%left_created + spent(created_energy)
+  end subroutine keep_dissipated
 end module stage_entry
