@@ -37,10 +37,10 @@ contains
                    'slave surface; the joints are called CONTACT1, CONTACT2, ... in the order '// &
                    'of the deck. A name that a *JOINT above has is left out: below a joint '// &
                    'CONTACT1 the first pair is CONTACT2. The distance of the surfaces in the '// &
-                   'mesh is the gap at the start, unless ADJUST or *CLEARANCE change it; overlaps '// &
-                   'press from the start. Gaps and overlaps up to 1e-6 of a facet are rounding of the mesh '// &
-                   'and count as zero. Sliding is small: the run stops where a point slides '// &
-                   'further than a facet. A pair acts in all steps.'
+                   'mesh is the gap at the start, unless ADJUST or *CLEARANCE change it; '// &
+                   'overlaps press from the start. Gaps and overlaps up to 1e-6 of a facet are '// &
+                   'rounding of the mesh and count as zero. Sliding is small: the run stops '// &
+                   'where a point slides further than a facet. A pair acts in all steps.'
     spec%example = '*CONTACT PAIR, INTERACTION=ROCK, TYPE=SURFACE TO SURFACE, SMALL SLIDING'// &
                    nl//'DAM_BASE, ROCK_TOP'
     spec%fewest_lines = 1

@@ -13,8 +13,8 @@ module material_path
   public :: path_record, follow_path
 
   real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment that is cut
-  !> Calls of the law in an increment with all its parts, and those that each increment adds. Ten are
-  !> usual.
+  !> Calls of the law in an increment with all its parts, and those that each increment adds. Ten
+  !> are usual.
   integer, parameter :: most_calls = 20000, mean_calls = 200
   character(8), parameter :: strain_names(6) = ['E11     ', 'E22     ', 'E33     ', &
                                                 'gamma 12', 'gamma 13', 'gamma 23']
