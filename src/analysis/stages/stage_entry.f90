@@ -4,7 +4,7 @@
 !> The mesh says which elements there are; state%origin the displacements at which an element has no
 !> stress.
 module stage_entry
-  use dam_mesh, only: fe_mesh, element_is_there
+  use dam_mesh, only: element_is_there, nodes_of_elements
   use errors, only: error_type
   use joint_parts, only: show_parts
   use kinds, only: rk
@@ -46,20 +46,14 @@ contains
   subroutine show_stage(model, number)
     type(problem), intent(inout) :: model
     integer, intent(in) :: number !< of the step
-    integer :: s, e, j
+    integer :: s, j
     if (.not. allocated(model%stages%is_absent)) return
     associate (mesh => model%mesh, plan => model%stages)
       mesh%is_absent = plan%is_absent(:, number)
       mesh%material_of_element = merge(0, plan%material, mesh%is_absent)
       mesh%stage = count([(plan%changes_elements(s), s=1, number)])
-      if (.not. allocated(mesh%is_node_absent)) allocate (mesh%is_node_absent(mesh%num_nodes))
-      mesh%is_node_absent = .false.
-      do e = 1, mesh%num_elements
-        if (mesh%is_absent(e)) mesh%is_node_absent(nodes_of(mesh, e)) = .true.
-      end do
-      do e = 1, mesh%num_elements
-        if (mesh%material_of_element(e) > 0) mesh%is_node_absent(nodes_of(mesh, e)) = .false.
-      end do
+      mesh%is_node_absent = nodes_of_elements(mesh, mesh%is_absent) &
+                            .and. .not. nodes_of_elements(mesh, mesh%material_of_element > 0)
     end associate
     do j = 1, size(model%joints)
       call show_parts(model%joints(j), number)
@@ -70,14 +64,6 @@ contains
       end associate
     end do
   end subroutine show_stage
-
-  !> The nodes of an element.
-  pure function nodes_of(mesh, element) result(nodes)
-    type(fe_mesh), intent(in) :: mesh
-    integer, intent(in) :: element
-    integer, allocatable :: nodes(:)
-    nodes = pack(mesh%nodes(:, element), mesh%nodes(:, element) > 0)
-  end function nodes_of
 
   !> Elements that come have no stress in the geometry of this moment, and a new history. Where a
   !> relation that begins to hold moves nodes, old elements and joints keep their stress.
