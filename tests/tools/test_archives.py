@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[2]
 STATE = "src/analysis/state/analysis_state.f90"
 MODAL_ERRORS = "src/analysis/state/modal_errors.f90"
 STATE_ARCHIVE = "src/analysis/state/state_archive.f90"
+ENERGY_ARCHIVE = "src/analysis/state/energy_archive.f90"
 MOTION_ARCHIVE = "src/analysis/state/motion_archive.f90"
 RECORD_ARCHIVE = "src/results/record/record_archive.f90"
 SUMMARY = "src/results/summary/run_summaries.f90"
@@ -65,7 +66,7 @@ TYPES = (
         ),
     ),
     of_state("increment_status", STATE, "status"),
-    of_state("energy_balance", STATE, "energy"),
+    of_state("energy_balance", STATE, "energy", ENERGY_ARCHIVE),
     of_state("motion", STATE, "motion", MOTION_ARCHIVE),
     of_state("modal_motion", STATE, "modal", MOTION_ARCHIVE),
     of_state("reduction_status", STATE, "reduction"),

@@ -29,6 +29,31 @@ TABLE = np.array(
     ]
 )
 
+TABLES = """*MATERIAL, NAME=C
+*ELASTIC
+30e9, 0.2
+*CONCRETE DAMAGED PLASTICITY, RECOVERY=ENERGY
+36., 0.1, 1.16, 0.6667, 1e-6
+*CONCRETE COMPRESSION HARDENING
+13e6, 0.
+24e6, 1e-3
+2e6, 5e-3
+*CONCRETE COMPRESSION DAMAGE
+0., 0.
+0., 1e-3
+0.8, 5e-3
+*CONCRETE TENSION STIFFENING, TYPE=STRAIN
+2.9e6, 0.
+1.94e6, 0.066e-3
+1.3e6, 0.12e-3
+0.05e6, 0.6e-3
+*CONCRETE TENSION DAMAGE, TYPE=STRAIN
+0., 0.
+0.38, 0.066e-3
+0.6, 0.12e-3
+0.9, 0.6e-3
+"""
+
 GFI = """*MATERIAL, NAME=C
 *ELASTIC
 30e9, 0.2
@@ -186,6 +211,17 @@ def test_stress_past_the_peak_ends_with_the_rows_so_far(keyway):
 
 def test_diverging_strain_is_reported(keyway):
     """A diverging iteration is reported as such, not as a fault of the law."""
-    test = "*MATERIAL TEST, NAME=T, TYPE=OEDOMETER, LENGTH=0.2\n1e9, 1\n"
+    test = "*MATERIAL TEST, NAME=T, TYPE=OEDOMETER, LENGTH=0.2, CONTROL=STRESS\n1e20, 1\n"
     run = keyway(GFI + test, "--material", code=1)
     assert "no convergence of concrete at a point, for a change of strain of " in run.stderr
+
+
+def test_a_test_whose_increments_are_cut_again_and_again_ends(keyway):
+    """Each increment may take 20000 calls of the law, all of them 200 more in the mean.
+
+    With 20000 in each of 100 increments this test took minutes.
+    """
+    test = "*MATERIAL TEST, NAME=T, TYPE=OEDOMETER, CONTROL=STRESS\n1e12\n"
+    run = keyway(TABLES + test, "--material", code=1)
+    assert "test T stops in leg 1" in run.stderr
+    assert run.csv("material_T")["iterations"].sum() < 20000 + 100 * 200

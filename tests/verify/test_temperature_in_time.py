@@ -85,8 +85,12 @@ def test_files_say_what_data_lines_say(keyway):
     columns = "# a comment\nnode, 0.25, 0.75\n"
     columns += "".join(f"{i}, 10., {v!r}\n" for i, v in enumerate(values, 1))
     sheet = "\ufeff" + plain.replace("\n", "\r\n")  # as spreadsheets write UTF-8
-    files = {"plain.csv": plain, "columns.csv": columns, "sheet.csv": sheet}
+    # Comments and quotes as in a deck; the set of one node has a name with a comma.
+    quoted = "  ** a comment\n\t# another one\n" + plain.replace("1, ", ' "1" , ', 1)
+    quoted = quoted.replace("2, ", "'last,  but one' , ", 1).replace("\n3, ", ",\n3, ", 1)
+    files = {"plain.csv": plain, "columns.csv": columns, "sheet.csv": sheet, "quoted.csv": quoted}
     deck = model(blocks, statically(blocks), law(0.0))
+    deck = deck.replace("*BOUNDARY", "*NSET, NSET='last,  but one'\n2\n*BOUNDARY", 1)
 
     def step_with(card: str) -> str:
         return f"*STEP\n*STATIC, DIRECT\n0.25, 1.\n{card}{OUTPUT}*END STEP\n"
@@ -97,11 +101,12 @@ def test_files_say_what_data_lines_say(keyway):
             "lines": f"*TEMPERATURE\n{plain}",
             "plain": "*TEMPERATURE, INPUT=plain.csv\n",
             "sheet": "*TEMPERATURE, INPUT=sheet.csv\n",
+            "quoted": "*TEMPERATURE, INPUT=quoted.csv\n",
             "columns": "*TEMPERATURE, INPUT=columns.csv\n",
             "total": "*TEMPERATURE, INPUT=columns.csv, TIME=TOTAL TIME\n",
         }.items()
     }
-    for name in ("plain", "sheet"):
+    for name in ("plain", "sheet", "quoted"):
         assert (runs["lines"]["TEMP"] == runs[name]["TEMP"]).all()
     for name in ("columns", "total"):
         table = runs[name]
@@ -112,10 +117,11 @@ def test_files_say_what_data_lines_say(keyway):
 
 
 def test_a_history_from_a_spreadsheet(keyway):
-    """A file of *AMPLITUDE with a byte order mark and CRLF says what data lines say."""
+    """A file of *AMPLITUDE with a byte order mark, CRLF and a comment behind blanks says what data
+    lines say."""
     blocks = brick((1, 1, 1))
     text = model(blocks, statically(blocks), law(0.0))
-    pairs = "0., 10.\n1., 40.\n"
+    pairs = "0., 10.\n  ** a comment\n1., 40.\n"
     warmed = "*STEP\n*STATIC, DIRECT\n0.25, 1.\n*TEMPERATURE, AMPLITUDE=YEAR\nALL, 1.\n"
     tables = [
         keyway(

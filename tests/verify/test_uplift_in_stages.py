@@ -103,6 +103,8 @@ def test_the_diagram_ends_where_the_solids_end(keyway, kind, points):
     assert_diagram(run, 3, (0.0, 2.0), (2.0, 0.0))
     assert_diagram(run, 4, (0.0, 4.0), (1.5, 0.0))
     assert max(s["energy"]["error"] for s in run.json["steps"]) < 1e-9
+    effects = [(effect["kind"], effect["name"]) for effect in run.json["effects"]]
+    assert len(effects) == len(set(effects)), "a reservoir of two levels is one effect"
 
 
 @KINDS

@@ -4,12 +4,15 @@
 !> The mesh says which elements there are; state%origin the displacements at which an element has no
 !> stress.
 module stage_entry
-  use dam_mesh, only: fe_mesh, element_is_there
+  use dam_mesh, only: element_is_there, nodes_of_elements
   use errors, only: error_type
   use joint_parts, only: show_parts
   use kinds, only: rk
+  use inelastic_blocks, only: inelastic_block
   use material_law, only: start_points
-  use analysis_state, only: state
+  use material_points, only: created_energy, crushing_energy, fracture_energy, num_energies, &
+                             point_state
+  use analysis_state, only: energy_balance, state
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
@@ -43,20 +46,14 @@ contains
   subroutine show_stage(model, number)
     type(problem), intent(inout) :: model
     integer, intent(in) :: number !< of the step
-    integer :: s, e, j
+    integer :: s, j
     if (.not. allocated(model%stages%is_absent)) return
     associate (mesh => model%mesh, plan => model%stages)
       mesh%is_absent = plan%is_absent(:, number)
       mesh%material_of_element = merge(0, plan%material, mesh%is_absent)
       mesh%stage = count([(plan%changes_elements(s), s=1, number)])
-      if (.not. allocated(mesh%is_node_absent)) allocate (mesh%is_node_absent(mesh%num_nodes))
-      mesh%is_node_absent = .false.
-      do e = 1, mesh%num_elements
-        if (mesh%is_absent(e)) mesh%is_node_absent(nodes_of(mesh, e)) = .true.
-      end do
-      do e = 1, mesh%num_elements
-        if (mesh%material_of_element(e) > 0) mesh%is_node_absent(nodes_of(mesh, e)) = .false.
-      end do
+      mesh%is_node_absent = nodes_of_elements(mesh, mesh%is_absent) &
+                            .and. .not. nodes_of_elements(mesh, mesh%material_of_element > 0)
     end associate
     do j = 1, size(model%joints)
       call show_parts(model%joints(j), number)
@@ -67,14 +64,6 @@ contains
       end associate
     end do
   end subroutine show_stage
-
-  !> The nodes of an element.
-  pure function nodes_of(mesh, element) result(nodes)
-    type(fe_mesh), intent(in) :: mesh
-    integer, intent(in) :: element
-    integer, allocatable :: nodes(:)
-    nodes = pack(mesh%nodes(:, element), mesh%nodes(:, element) > 0)
-  end function nodes_of
 
   !> Elements that come have no stress in the geometry of this moment, and a new history. Where a
   !> relation that begins to hold moves nodes, old elements and joints keep their stress.
@@ -114,7 +103,8 @@ contains
     call heat_points(model, now)
   end subroutine move_elements
 
-  !> The points of inelastic elements that come or go start anew.
+  !> The points of inelastic elements that come or go start anew. What they have dissipated remains
+  !> in the balance.
   subroutine renew_points(model, was_absent, now)
     type(problem), intent(in) :: model
     logical, intent(in) :: was_absent(:) !< (elements)
@@ -124,9 +114,21 @@ contains
       associate (part => model%inelastic(i))
         if (was_absent(part%elements(1)) .eqv. &
             .not. element_is_there(model%mesh, part%elements(1))) cycle
+        call keep_dissipated(part, now%points(i), now%energy)
         call start_points(model%materials(part%material)%law, part%points, now%points(i))
       end associate
     end do
   end subroutine renew_points
 
+  !> Adds the energies that a block has dissipated so far to those of solids that have left.
+  pure subroutine keep_dissipated(part, own, energy)
+    type(inelastic_block), intent(in) :: part
+    type(point_state), intent(in) :: own
+    type(energy_balance), intent(inout) :: energy
+    real(rk) :: spent(num_energies)
+    spent = matmul(own%energy, reshape(part%weight, [size(part%weight)]))
+    energy%left_cracking = energy%left_cracking + spent(fracture_energy)
+    energy%left_crushing = energy%left_crushing + spent(crushing_energy)
+    energy%left_created = energy%left_created + spent(created_energy)
+  end subroutine keep_dissipated
 end module stage_entry

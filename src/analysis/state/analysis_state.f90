@@ -27,6 +27,9 @@ module analysis_state
     real(rk) :: friction = 0.0_rk
     real(rk) :: fracture = 0.0_rk !< dissipated by cracking and crushing, in joints and solids
     real(rk) :: crushing = 0.0_rk !< the part of `fracture` that is crushing
+    !> Cracking, crushing and energy created by laws, of solids that have left; their dissipation is
+    !> part of `fracture` and `crushing`
+    real(rk) :: left_cracking = 0.0_rk, left_crushing = 0.0_rk, left_created = 0.0_rk
     real(rk) :: numerical = 0.0_rk !< dissipated by the time integration, from its own formula
     !> Work of elements that come and go, and of grout: their energy, and the forces that the change
     !> of a stage leaves without balance

@@ -5,8 +5,9 @@ module state_archive
   use archive_type, only: archive
   use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, energy_balance, last_matrix, &
-                            reduction_status, time_accuracy
+  use analysis_state, only: state, increment_status, last_matrix, reduction_status, &
+                            time_accuracy
+  use energy_archive, only: load_energy, save_energy
   use modal_errors, only: load_timing, save_timing
   use path_errors, only: load_path, save_path
   use path_twins, only: load_twins, save_twins
@@ -15,8 +16,7 @@ module state_archive
   use write_text, only: as_text
   implicit none
   private
-  public :: save_state, load_state, save_energy, load_energy, save_reduction, load_reduction
-  public :: save_accuracy, load_accuracy
+  public :: save_state, load_state, save_reduction, load_reduction, save_accuracy, load_accuracy
 
 contains
 
@@ -255,44 +255,6 @@ contains
     call load_path(status%path, file)
     call file%close_group()
   end subroutine load_status
-
-  !> Writes the energies.
-  subroutine save_energy(energy, file)
-    type(energy_balance), intent(in) :: energy
-    class(archive), intent(inout) :: file
-    call file%put('external', energy%external)
-    call file%put('kinetic', energy%kinetic)
-    call file%put('strain', energy%strain)
-    call file%put('damping', energy%damping)
-    call file%put('friction', energy%friction)
-    call file%put('fracture', energy%fracture)
-    call file%put('crushing', energy%crushing)
-    call file%put('numerical', energy%numerical)
-    call file%put('stages', energy%stages)
-    call file%put('temperature', energy%temperature)
-    call file%put('initial', energy%initial)
-    call file%put('error', energy%error)
-    call file%put('largest', energy%largest)
-  end subroutine save_energy
-
-  !> Reads the energies.
-  subroutine load_energy(energy, file)
-    type(energy_balance), intent(inout) :: energy
-    class(archive), intent(inout) :: file
-    call file%get('external', energy%external)
-    call file%get('kinetic', energy%kinetic)
-    call file%get('strain', energy%strain)
-    call file%get('damping', energy%damping)
-    call file%get('friction', energy%friction)
-    call file%get('fracture', energy%fracture)
-    call file%get('crushing', energy%crushing)
-    call file%get('numerical', energy%numerical)
-    call file%get('stages', energy%stages)
-    call file%get('temperature', energy%temperature)
-    call file%get('initial', energy%initial)
-    call file%get('error', energy%error)
-    call file%get('largest', energy%largest)
-  end subroutine load_energy
 
   !> Writes what is known of the reduced model.
   subroutine save_reduction(reduction, file)

@@ -163,8 +163,8 @@ contains
       if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(own%v, own%momentum)
       energy%strain = system%stored_energy(own%q, own%elastic) + guests%stored
       energy%friction = guests%friction
-      energy%fracture = guests%fracture
-      energy%crushing = guests%crushing
+      energy%fracture = guests%fracture + energy%left_cracking + energy%left_crushing
+      energy%crushing = guests%crushing + energy%left_crushing
       energy%largest = max(energy%largest, idle_share*total(system%diagonal*own%q**2))
       call find_error(energy)
     end associate

@@ -5,7 +5,7 @@
 !> the end of the previous increment.
 module joint_water
   use kinds, only: rk
-  use joint_law, only: joint_state, phase_absent, state_open
+  use joint_law, only: absent_points, joint_state, state_open
   use joint_operator, only: jump_operator
   use problem_definition, only: problem
   use step_loads, only: load_group, step_time, factor_at
@@ -159,7 +159,7 @@ contains
     else
       call model%loads(rule%load)%item%joint_pressure(now%status == state_open, pressure)
     end if
-    if (allocated(now%phase)) pressure = merge(0.0_rk, pressure, now%phase == phase_absent)
+    where (absent_points(now)) pressure = 0.0_rk
     if (.not. allocated(now%water)) now%water = 0.0_rk*pressure
     now%water = now%water + factor*pressure
   end subroutine add_pressure

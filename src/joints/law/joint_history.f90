@@ -10,7 +10,8 @@ module joint_history
   private
   public :: joint_state, allocate_state
   public :: state_open, state_stick, state_slip, state_bonded
-  public :: phase_absent, phase_contact, phase_full, is_bare, takes_grout, openings_to_part
+  public :: phase_absent, phase_contact, phase_full, absent_points, is_bare, takes_grout
+  public :: openings_to_part
 
   integer, parameter :: state_open = 0, state_stick = 1, state_slip = 2, state_bonded = 3
 
@@ -117,6 +118,14 @@ contains
     is_bare = .false.
     if (allocated(state%phase)) is_bare = state%phase(point) /= phase_full
   end function is_bare
+
+  !> The points that do nothing, since an element behind them is absent.
+  pure function absent_points(state) result(is_absent)
+    type(joint_state), intent(in) :: state
+    logical :: is_absent(size(state%gap))
+    is_absent = .false.
+    if (allocated(state%phase)) is_absent = state%phase == phase_absent
+  end function absent_points
 
   !> The points that a *GROUT fills: those that are there, but for intact ones.
   pure function takes_grout(state) result(takes)

@@ -10,16 +10,17 @@
 module joint_law
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use joint_history, only: allocate_state, is_bare, joint_state, phase_absent, phase_contact, &
-                           phase_full, state_bonded, state_open, state_slip, state_stick, &
-                           takes_grout, openings_to_part
+  use joint_history, only: absent_points, allocate_state, is_bare, joint_state, phase_absent, &
+                           phase_contact, phase_full, state_bonded, state_open, state_slip, &
+                           state_stick, takes_grout, openings_to_part
   use keyword_spec, only: keyword_variant
   use kinds, only: rk
   implicit none
   private
   public :: traction_law, joint_state, solid_behind, allocate_state
   public :: state_open, state_stick, state_slip, state_bonded
-  public :: phase_absent, phase_contact, phase_full, is_bare, takes_grout, openings_to_part
+  public :: phase_absent, phase_contact, phase_full, absent_points, is_bare, takes_grout
+  public :: openings_to_part
 
   !> What a law may derive its stiffness from.
   type :: solid_behind

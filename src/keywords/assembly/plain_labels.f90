@@ -4,7 +4,7 @@ module plain_labels
   use deck_card, only: card
   implicit none
   private
-  public :: drop_inner_quotes
+  public :: drop_inner_quotes, plain_label
 
 contains
 
@@ -20,12 +20,12 @@ contains
       call words%begin(cards(i))
       do k = 1, size(cards(i)%parameters)
         name = cards(i)%text(cards(i)%parameters(k)%name)
-        if (is_joined(name)) call words%put_value(cards(i), k, without_quotes(name))
+        if (is_joined(name)) call words%put_value(cards(i), k, plain_label(name))
       end do
       do line = 1, cards(i)%num_lines
         do field = 1, cards(i)%num_fields(line)
           name = cards(i)%text_at(line, field)
-          if (is_joined(name)) call words%put_field(cards(i), line, field, without_quotes(name))
+          if (is_joined(name)) call words%put_field(cards(i), line, field, plain_label(name))
         end do
       end do
       call words%finish(cards(i))
@@ -38,13 +38,16 @@ contains
     is_joined = index(name, '".') > 0 .or. index(name, '."') > 0
   end function is_joined
 
-  pure function without_quotes(name) result(plain)
+  !> A name without the quotes inside; any other name as it is.
+  pure function plain_label(name) result(plain)
     character(*), intent(in) :: name
     character(:), allocatable :: plain
     integer :: i
+    plain = name
+    if (.not. is_joined(name)) return
     plain = ''
     do i = 1, len(name)
       if (name(i:i) /= '"') plain = plain//name(i:i)
     end do
-  end function without_quotes
+  end function plain_label
 end module plain_labels

@@ -35,11 +35,12 @@ contains
     spec%meaning = 'Contact between two surfaces whose meshes may differ, as in Abaqus and '// &
                    'CalculiX. Each line becomes a joint with its points at the nodes of the '// &
                    'slave surface; the joints are called CONTACT1, CONTACT2, ... in the order '// &
-                   'of the deck. The distance of the surfaces in the mesh is the gap at the '// &
-                   'start, unless ADJUST or *CLEARANCE change it; overlaps press from the '// &
-                   'start. Gaps and overlaps up to 1e-6 of a facet are rounding of the mesh '// &
-                   'and count as zero. Sliding is small: the run stops where a point slides '// &
-                   'further than a facet. A pair acts in all steps.'
+                   'of the deck. A name that a *JOINT above has is left out: below a joint '// &
+                   'CONTACT1 the first pair is CONTACT2. The distance of the surfaces in the '// &
+                   'mesh is the gap at the start, unless ADJUST or *CLEARANCE change it; '// &
+                   'overlaps press from the start. Gaps and overlaps up to 1e-6 of a facet are '// &
+                   'rounding of the mesh and count as zero. Sliding is small: the run stops '// &
+                   'where a point slides further than a facet. A pair acts in all steps.'
     spec%example = '*CONTACT PAIR, INTERACTION=ROCK, TYPE=SURFACE TO SURFACE, SMALL SLIDING'// &
                    nl//'DAM_BASE, ROCK_TOP'
     spec%fewest_lines = 1
@@ -86,6 +87,7 @@ contains
       if (min(new%slave, new%master, interaction) == 0) cycle
       if (is_known(this, line, new, interaction, model, faults)) cycle
       call add_pair(model, new, model%interactions(interaction))
+      call warn_of_name(this, line, model, faults)
     end do
     if (.not. this%has('SMALL SLIDING')) then
       call this%warn(faults, 'sliding is small here: the run stops where a point slides '// &
@@ -196,6 +198,26 @@ contains
       if (.not. any([(model%joints(i)%name == name, i=1, size(model%joints))])) return
     end do
   end function free_name
+
+  !> A pair that could not get its name, since a *JOINT has it.
+  subroutine warn_of_name(this, line, model, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line
+    type(draft), intent(in) :: model
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: usual
+    integer :: i, last
+    last = size(model%joints)
+    usual = 'CONTACT'//as_text(count(model%joints%contact_law > 0))
+    do i = 1, last - 1
+      associate (other => model%joints(i))
+        if (other%contact_law > 0 .or. other%name /= usual) cycle
+        call this%warn_at(faults, line, 1, 'the pair is called '//model%joints(last)%name// &
+                          ': a *JOINT has the name of the pair, '//usual, &
+                          'another name of the *JOINT')
+      end associate
+    end do
+  end subroutine warn_of_name
 
   !> The law of joints for a surface interaction.
   pure function law_of(interaction) result(law)

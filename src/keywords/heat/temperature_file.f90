@@ -3,12 +3,14 @@
 module temperature_file
   use deck_card, only: card
   use deck_file, only: first_letter, load_text, path_of_named
+  use deck_words, only: next_word, strip_quotes
   use diagnostics, only: diagnostic_list, place, severity_error
   use growing_lists, only: make_room
   use heat_plan, only: heat_rule
   use instance_list, only: find_flat_node
   use kinds, only: rk
   use model_draft, only: draft
+  use plain_labels, only: plain_label
   use parse_text, only: largest_number, parse_real, upper_case
   use write_text, only: as_text
   implicit none
@@ -58,6 +60,9 @@ contains
       reader%line = text(first:first + length - 1)
       reader%spot%line = reader%spot%line + 1
       first = first + length + 1
+      if (length > 0) then
+        if (reader%line(length:) == return) reader%line = reader%line(:length - 1)
+      end if
       call take_line(reader, model, faults)
       if (reader%num_columns == 0) return ! without a header that is right no row is
     end do
@@ -75,9 +80,10 @@ contains
     type(table_reader), intent(inout) :: reader
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (len_trim(reader%line) == 0) return
-    if (verify(reader%line, ' '//tab//return) == 0) return
-    if (index('*#', reader%line(1:1)) > 0) return
+    integer :: first
+    first = verify(reader%line, ' '//tab)
+    if (first == 0) return
+    if (index('*#', reader%line(first:first)) > 0) return
     call split_words(reader)
     if (.not. reader%has_rows .and. upper_case(word(reader, 1)) == 'NODE') then
       call take_header(reader, faults)
@@ -86,33 +92,36 @@ contains
     end if
   end subroutine take_line
 
-  !> The words between commas, without blanks around them.
+  !> The words between commas as in data lines of a deck: without blanks and quotes around them, and
+  !> without empty words at the end.
   pure subroutine split_words(reader)
     type(table_reader), intent(inout) :: reader
-    character(*), parameter :: blanks = ' '//tab//return
-    integer :: n, i, start, ending, offset
+    integer :: most, used, number, position
     associate (line => reader%line)
-      n = count([(line(i:i) == ',', i=1, len(line))]) + 1
+      most = count([(line(position:position) == ',', position=1, len(line))]) + 1
       if (allocated(reader%first)) deallocate (reader%first, reader%last)
-      allocate (reader%first(n), reader%last(n))
-      start = 1
-      do i = 1, n
-        ending = index(line(start:), ',') + start - 2
-        if (i == n) ending = len(line)
-        offset = verify(line(start:ending), blanks)
-        reader%first(i) = start + max(offset, 1) - 1
-        reader%last(i) = start + verify(line(start:ending), blanks, back=.true.) - 1
-        start = ending + 2
+      allocate (reader%first(most), reader%last(most))
+      used = 1
+      position = 1
+      do number = 1, most
+        call next_word(line, position, reader%first(number), reader%last(number))
+        if (position > len(line) + 1) exit
+      end do
+      do number = 1, min(number, most)
+        call strip_quotes(line, reader%first(number), reader%last(number))
+        if (reader%first(number) <= reader%last(number)) used = number
       end do
     end associate
+    reader%first = reader%first(:used)
+    reader%last = reader%last(:used)
   end subroutine split_words
 
-  !> A word of the line.
+  !> A word of the line. A name may have quotes inside: "Part 1-1".Set.
   pure function word(reader, number)
     type(table_reader), intent(in) :: reader
     integer, intent(in) :: number
     character(:), allocatable :: word
-    word = reader%line(reader%first(number):reader%last(number))
+    word = plain_label(reader%line(reader%first(number):reader%last(number)))
   end function word
 
   !> 'node, 0, 30, 60': the times of the columns. One column may have any name.

@@ -64,7 +64,8 @@ contains
                     'so far', &
                     default='1e-9', lowest=0.0_rk, highest=0.01_rk, excludes_lowest=.true.)])
     allocate (spec%columns, source=[ &
-              field('target', kind_real, 'strain, or stress [Pa], at the end of the leg', &
+              field('target', kind_real, 'strain from -10 to 10, or stress [Pa], at the end '// &
+                    'of the leg', &
                     is_required=.true.), &
               field('increments', kind_integer, 'number of equal increments of the leg, one '// &
                     'row of results each; INCREMENTS if empty', &

@@ -13,6 +13,9 @@ module material_test_legs
 
   integer, parameter :: most_increments = 1000000 !< of a leg, as of INCREMENTS
 
+  !> Far beyond small strains. Larger numbers are stresses, or have a wrong exponent.
+  real(rk), parameter :: largest_strain = 10.0_rk
+
 contains
 
   !> All legs of a test, its cycles one after the other.
@@ -69,6 +72,7 @@ contains
     end select
     leg%is_stress(driven) = this%word('CONTROL') == 'STRESS'
     leg%target(driven) = target
+    if (.not. leg%is_stress(driven)) call check_strain(this, line, 1, target, faults)
     call read_pace(this, line, 2, faults, leg)
   end subroutine read_named_leg
 
@@ -95,9 +99,25 @@ contains
       legs(line)%is_held(i) = this%is_empty_at(line, i + 1)
       if (legs(line)%is_held(i)) cycle
       legs(line)%target(i) = number_at(this, line, i + 1, 'target', faults)
+      if (legs(line)%is_stress(i)) cycle
+      call check_strain(this, line, i + 1, legs(line)%target(i), faults)
     end do
     call read_pace(this, line, num_components + 2, faults, legs(line))
   end subroutine read_general_leg
+
+  !> Reports a number that is no strain: with it no law finds a stress in reasonable time.
+  subroutine check_strain(this, line, field, strain, faults)
+    type(card), intent(in) :: this
+    integer, intent(in) :: line, field
+    real(rk), intent(in) :: strain
+    type(diagnostic_list), intent(inout) :: faults
+    character(:), allocatable :: for_stress
+    if (abs(strain) <= largest_strain) return
+    for_stress = 'CONTROL=STRESS'
+    if (this%word('TYPE') == 'GENERAL') for_stress = 'S in the control'
+    call this%fault_at(faults, line, field, "found '"//this%text_at(line, field)//"'", &
+                       'a strain from -10 to 10, or '//for_stress//' for a stress')
+  end subroutine check_strain
 
   !> increments, time.
   subroutine read_pace(this, line, field, faults, leg)

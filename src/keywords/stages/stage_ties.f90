@@ -2,6 +2,7 @@
 !>
 !> A tie holds while its nodes have elements: it would hold a face where a solid is absent.
 module stage_ties
+  use dam_mesh, only: nodes_of_elements
   use diagnostics, only: diagnostic_list
   use facet_segments, only: find_segments
   use kinds, only: rk
@@ -45,7 +46,8 @@ contains
       call list_surface_facets(mesh, model%problem%surfaces(request%master), master)
       call find_segments(mesh%x, slave, master, segments, cover)
       do step = 1, size(plan%is_absent, 2)
-        has_solid = nodes_with_solids(model, step)
+        has_solid = nodes_of_elements(mesh, mesh%material_of_element > 0 &
+                                      .and. .not. plan%is_absent(:, step))
         do s = 1, segments%num_segments
           associate (one => segments%slave(s), other => segments%master(s))
             lost = 0
@@ -61,21 +63,6 @@ contains
       end do
     end associate
   end subroutine check_tie
-
-  !> The nodes that have a solid in a step.
-  pure function nodes_with_solids(model, step) result(has_solid)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: step
-    logical :: has_solid(model%problem%mesh%num_nodes)
-    integer :: e
-    has_solid = .false.
-    associate (mesh => model%problem%mesh, plan => model%problem%stages)
-      do e = 1, mesh%num_elements
-        if (mesh%material_of_element(e) == 0 .or. plan%is_absent(e, step)) cycle
-        has_solid(pack(mesh%nodes(:, e), mesh%nodes(:, e) > 0)) = .true.
-      end do
-    end associate
-  end function nodes_with_solids
 
   !> Whether each corner of a facet lies on one of the other.
   pure logical function are_equal(x, y)

@@ -105,7 +105,10 @@ contains
     integer :: first, last, num_before, most
     logical :: is_number
     num_before = used
-    if (index('*#', line(1:min(1, len(line)))) > 0 .and. len(line) > 0) return
+    first = verify(line, ' '//achar(9))
+    if (first > 0) then
+      if (index('*#', line(first:first)) > 0) return
+    end if
     last = 0
     do
       first = verify(line(last + 1:), separators) + last

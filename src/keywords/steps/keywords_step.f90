@@ -23,6 +23,9 @@ module keywords_step
 
   character, parameter :: nl = new_line('a')
   character(*), parameter :: reduced = 'REDUCED' !< scheme
+  !> Of a dynamic step, in any unit. Matrices hold the density over its square, which is infinite
+  !> below 1e-154.
+  real(rk), parameter :: least_increment = 1.0e-60_rk
 
 contains
 
@@ -236,6 +239,7 @@ contains
                     '1e-3 of the increment'), &
               field('largest', kind_real, 'largest increment', 's', 'the increment')])
     call want_positive(spec)
+    spec%columns([1, 3])%lowest = least_increment
     call add_words_of_dynamic(spec)
   end subroutine describe_dynamic
 

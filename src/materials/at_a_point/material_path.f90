@@ -12,6 +12,14 @@ module material_path
   private
   public :: path_record, follow_path
 
+  real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment that is cut
+  !> Calls of the law in an increment with all its parts, and those that each increment adds. Ten
+  !> are usual.
+  integer, parameter :: most_calls = 20000, mean_calls = 200
+  character(8), parameter :: strain_names(6) = ['E11     ', 'E22     ', 'E33     ', &
+                                                'gamma 12', 'gamma 13', 'gamma 23']
+  character(3), parameter :: stress_names(6) = ['S11', 'S22', 'S33', 'S12', 'S13', 'S23']
+
   !> Results row by row; each row takes the place of a point in the state.
   type :: path_record
     integer :: num_rows = 0 !< in use; the first is the initial state
@@ -30,14 +38,9 @@ module material_path
     real(rk) :: largest = 0.0_rk !< stress so far [Pa]
     type(time_increment) :: time
     integer :: iterations = 0 !< calls of the law since the last row
+    integer :: calls_left = most_calls !< of the law, before the test stops
     type(user_library), pointer :: umat => null() !< its UEXTERNALDB is called in each increment
   end type traveller
-
-  real(rk), parameter :: smallest_part = 2.0_rk**(-14) !< of an increment that is cut
-  integer, parameter :: most_calls = 20000 !< of the law in an increment with all its parts
-  character(8), parameter :: strain_names(6) = ['E11     ', 'E22     ', 'E33     ', &
-                                                'gamma 12', 'gamma 13', 'gamma 23']
-  character(3), parameter :: stress_names(6) = ['S11', 'S22', 'S33', 'S12', 'S13', 'S23']
 
 contains
 
@@ -101,6 +104,7 @@ contains
     now%time%increment = 0
     associate (leg => test%legs(number))
       do i = 1, leg%num_increments
+        now%calls_left = min(most_calls, now%calls_left + mean_calls)
         call advance_point(law, test, start, [i - 1, i], now, outcome, error)
         if (allocated(error)) return
         if (.not. outcome%has_converged) then
@@ -144,6 +148,7 @@ contains
                                         leg%num_increments, now%largest), &
                              now%old, new, tangent, outcome)
         now%iterations = now%iterations + outcome%iterations
+        now%calls_left = now%calls_left - outcome%iterations
         if (outcome%has_converged) then
           call accept_point(new, tangent, now)
           call notify_user(at_increment_end, now, error)
@@ -153,11 +158,24 @@ contains
         else
           part = part*outcome%size_ratio
           now%time%increment = now%time%increment - 1
-          if (part < smallest_part .or. now%iterations > most_calls) return
+          if (part < smallest_part) return
+        end if
+        if (now%calls_left < 0) then
+          call give_up(outcome)
+          return
         end if
       end do
     end associate
   end subroutine advance_point
+
+  !> Ends an increment whose parts stay small.
+  subroutine give_up(outcome)
+    type(increment_outcome), intent(inout) :: outcome
+    outcome%has_converged = .false.
+    if (len(outcome%message) > 0) return
+    outcome%message = 'more than '//as_text(most_calls)//' calls of the law, in ever smaller '// &
+                      'parts of increments; take smaller targets, or more INCREMENTS'
+  end subroutine give_up
 
   !> Calls UEXTERNALDB of a UMAT at a moment.
   subroutine notify_user(moment, now, error)

@@ -9,6 +9,7 @@ module dam_mesh
   implicit none
   private
   public :: fe_mesh, named_set, surface, node_tie, element_is_there, are_there, is_assembled_here
+  public :: nodes_of_elements
 
   type :: fe_mesh
     integer :: num_nodes = 0
@@ -76,6 +77,19 @@ contains
       is_here = mesh%rank_of_element(element) == rank
     end if
   end function is_assembled_here
+
+  !> Marks the nodes of marked elements.
+  pure function nodes_of_elements(mesh, is_marked) result(is_theirs)
+    type(fe_mesh), intent(in) :: mesh
+    logical, intent(in) :: is_marked(:) !< (elements)
+    logical :: is_theirs(mesh%num_nodes)
+    integer :: e
+    is_theirs = .false.
+    do e = 1, mesh%num_elements
+      if (.not. is_marked(e)) cycle
+      is_theirs(pack(mesh%nodes(:, e), mesh%nodes(:, e) > 0)) = .true.
+    end do
+  end function nodes_of_elements
 
   !> Whether all these nodes take part in the present step.
   pure logical function are_there(mesh, nodes)

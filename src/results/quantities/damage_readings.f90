@@ -97,9 +97,9 @@ contains
     record%elements = 0
     record%inelastic_volume = 0.0_rk
     record%inelastic_elements = 0
-    record%cracking = 0.0_rk
-    record%crushing = 0.0_rk
-    record%created = 0.0_rk
+    record%cracking = now%energy%left_cracking
+    record%crushing = now%energy%left_crushing
+    record%created = now%energy%left_created
     do i = 1, size(model%inelastic)
       if (all(now%points(i)%is_elastic)) cycle
       call field_of_block(model, now, i, 'DAMAGET', tension)

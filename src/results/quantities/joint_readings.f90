@@ -1,7 +1,7 @@
 !> Joints in the results: opening, slip and pressure at the points, opening on the nodes.
 module joint_readings
   use kinds, only: rk
-  use joint_law, only: joint_state, phase_absent
+  use joint_law, only: absent_points, joint_state
   use joint_opening, only: opening_of
   use joint_points, only: dam_joint
   use problem_definition, only: problem
@@ -33,7 +33,7 @@ contains
     type(joint_state), intent(in) :: now
     real(rk) :: opening(size(now%gap))
     opening = opening_of(now%jump(1, :), now%gap)
-    if (allocated(now%phase)) opening = merge(0.0_rk, opening, now%phase == phase_absent)
+    where (absent_points(now)) opening = 0.0_rk
   end function opening_at_points
 
   !> Signed opening on the nodes of all joints, on both sides; zero on other nodes [m]. A node takes
@@ -46,18 +46,17 @@ contains
     real(rk) :: opening(model%mesh%num_nodes)
     real(rk) :: total(model%mesh%num_nodes)
     real(rk), allocatable :: of_points(:)
-    logical, allocatable :: is_there(:)
+    logical, allocatable :: is_absent(:)
     integer :: j, p, k
     real(rk) :: share
     opening = 0.0_rk
     total = 0.0_rk
     do j = 1, size(model%joints)
       of_points = opening_at_points(now%joints(j))
-      is_there = spread(.true., 1, size(of_points))
-      if (allocated(now%joints(j)%phase)) is_there = now%joints(j)%phase /= phase_absent
+      is_absent = absent_points(now%joints(j))
       associate (joint => model%joints(j))
         do p = 1, joint%num_points
-          if (.not. is_there(p)) cycle
+          if (is_absent(p)) cycle
           do k = joint%first(p), joint%first(p + 1) - 1
             share = joint%weight(k)*joint%area(p)
             if (k >= joint%first_master(p)) share = -share

@@ -7,7 +7,7 @@ module stress_fields
   use tensor6, only: find_principal_values
   use tensor6_wide, only: find_wide => find_principal_values
   use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, recover_some, &
-                             copy_stresses, max_points, fewest_for_threads, recover_expansions
+                             copy_states, max_points, fewest_for_threads, recover_expansions
   use node_means, only: average_at_nodes, average_at
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
@@ -242,7 +242,7 @@ contains
         do i = start(node), start(node + 1) - 1
           s = (self%plan%corner(i) - 1)/8 + 1
           if (is_copied(s)) cycle
-          call copy_stresses(self%plan, now, [s], self%point_stress)
+          call copy_states(self%plan, now, [s], stress=self%point_stress)
           is_copied(s) = .true.
         end do
       end associate

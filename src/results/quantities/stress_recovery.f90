@@ -16,7 +16,7 @@ module stress_recovery
   use thermal_recovery, only: add_expansion, take_thermal
   implicit none
   private
-  public :: recovery_plan, make_recovery_plan, recover_points, recover_some, copy_stresses
+  public :: recovery_plan, make_recovery_plan, recover_points, recover_some, copy_states
   public :: max_points, recover_expansions
   public :: operators_of_block, motion_of_element, fewest_for_threads
 
@@ -217,8 +217,8 @@ contains
     real(rk) :: d(6, 6)
     integer :: k, q
     if (part%is_inelastic) then
-      if (present(strain)) call copy_strains(plan, now, part%solids, strain)
-      if (present(stress)) call copy_stresses(plan, now, part%solids, stress)
+      if (present(strain)) call copy_states(plan, now, part%solids, strain=strain)
+      if (present(stress)) call copy_states(plan, now, part%solids, stress=stress)
     else
       call model%materials(part%material)%law%elastic_stiffness(d)
       call find_strains(model, plan, part, now, d, found)
@@ -233,37 +233,23 @@ contains
     if (present(strain)) call add_expansions(model, plan, part, now, strain)
   end subroutine recover_part
 
-  !> Strains of solids with states.
-  subroutine copy_strains(plan, now, solids, strain)
+  !> Strain, stress or both of solids with states.
+  subroutine copy_states(plan, now, solids, strain, stress)
     type(recovery_plan), intent(in) :: plan
     type(state), intent(in) :: now
     integer, intent(in) :: solids(:) !< of inelastic blocks
-    real(rk), intent(inout) :: strain(:, :, :)
-    integer :: k, n, before
+    real(rk), intent(inout), optional :: strain(:, :, :), stress(:, :, :)
+    integer :: k, n, first, last
     do k = 1, size(solids)
       n = plan%num_points(solids(k))
-      before = plan%points_before(solids(k))
+      first = plan%points_before(solids(k)) + 1
+      last = plan%points_before(solids(k)) + n
       associate (points => now%points(plan%inelastic_block(solids(k))))
-        strain(:, :n, solids(k)) = points%strain(:, before + 1:before + n)
+        if (present(strain)) strain(:, :n, solids(k)) = points%strain(:, first:last)
+        if (present(stress)) stress(:, :n, solids(k)) = points%stress(:, first:last)
       end associate
     end do
-  end subroutine copy_strains
-
-  !> Stresses of solids with states.
-  subroutine copy_stresses(plan, now, solids, stress)
-    type(recovery_plan), intent(in) :: plan
-    type(state), intent(in) :: now
-    integer, intent(in) :: solids(:) !< of inelastic blocks
-    real(rk), intent(inout) :: stress(:, :, :)
-    integer :: k, n, before
-    do k = 1, size(solids)
-      n = plan%num_points(solids(k))
-      before = plan%points_before(solids(k))
-      associate (points => now%points(plan%inelastic_block(solids(k))))
-        stress(:, :n, solids(k)) = points%stress(:, before + 1:before + n)
-      end associate
-    end do
-  end subroutine copy_stresses
+  end subroutine copy_states
 
   !> Adds the expansions to the strains of one block.
   subroutine add_expansions(model, plan, part, now, strain)

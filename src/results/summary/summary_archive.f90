@@ -2,11 +2,11 @@
 !> tests/tools/test_archives.py compares the procedures with the types.
 module summary_archive
   use archive_type, only: archive
+  use energy_archive, only: load_energy, save_energy
   use errors, only: error_type
   use kinds, only: rk
   use run_summaries, only: run_summary, step_summary
-  use state_archive, only: load_accuracy, load_energy, load_reduction, save_accuracy, save_energy, &
-                           save_reduction
+  use state_archive, only: load_accuracy, load_reduction, save_accuracy, save_reduction
   use write_text, only: as_text
   implicit none
   private

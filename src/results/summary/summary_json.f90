@@ -17,6 +17,7 @@ module summary_json
   use json_writer, only: json_text, lower
   use error_json, only: put_estimates, put_increments
   use machine_json, only: put_machine
+  use text_table, only: text_numbers
   use model_json, only: put_instances, put_model
   use joint_json, only: put_joints, put_interfaces, put_extremes
   use damage_json, only: put_damage
@@ -25,6 +26,8 @@ module summary_json
   implicit none
   private
   public :: write_summary
+
+  character, parameter :: nl = new_line('a')
 
   !> Blanks at the end of the summary of a run that goes on: room for its last summary on a disk
   !> that is full by then.
@@ -107,11 +110,14 @@ contains
     call json%close_object()
   end subroutine put_program
 
-  !> The guests of the model: loads, joints, springs, ties, inelastic materials, damping.
+  !> The guests of the model: loads, joints, springs, ties, inelastic materials, damping. A load has
+  !> an entry of the model for each pattern of its forces, such as a level of water; it is listed
+  !> once.
   subroutine put_effects(json, model)
     type(json_text), intent(inout) :: json
     type(problem), intent(in), target :: model
     type(guest_reference), allocatable :: guests(:)
+    type(text_numbers) :: listed
     integer :: i
     call json%open_array('effects')
     do i = 1, size(model%loads)
@@ -138,9 +144,12 @@ contains
 
   contains
 
-    !> One guest.
+    !> One guest, unless it is listed.
     subroutine put_effect(name, kind)
       character(*), intent(in) :: name, kind
+      integer :: number
+      if (listed%find(kind//nl//name) > 0) return
+      call listed%find_or_add(kind//nl//name, number)
       call json%open_object()
       call json%put_text(name, 'name')
       call json%put_text(kind, 'kind')

@@ -12,7 +12,7 @@ module write_joint_vtk
   use joint_surface, only: drawn_joints, joint_values, find_drawn_joints, means_on_corners, &
                            heaviest_on_corners, nodes_to_corners
   use vtk_order, only: cell_of_polygon
-  use joint_law, only: phase_absent
+  use joint_law, only: absent_points
   use archive_type, only: archive
   use earlier_files, only: missing_files, remove_series
   use file_identity, only: add_path, file_path
@@ -179,9 +179,7 @@ contains
     do j = 1, size(model%joints)
       call item%of_joint(model, now, j, of_joints(j)%at)
       is_there = is_there .or. allocated(of_joints(j)%at)
-      if (allocated(now%joints(j)%phase)) then
-        of_joints(j)%is_absent = now%joints(j)%phase == phase_absent
-      end if
+      of_joints(j)%is_absent = absent_points(now%joints(j))
     end do
     if (.not. is_there) return
     if (item%is_integer) then
