@@ -63,6 +63,7 @@ contains
       return
     end if
     rule%uses_total_time = this%word('TIME') == 'TOTAL TIME'
+    rule%step = model%num_steps + 1
     if (this%has('INPUT')) then
       call read_temperature_file(this, model, faults, rule)
       if (.not. allocated(rule%time)) return ! its faults are reported
