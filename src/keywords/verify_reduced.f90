@@ -84,23 +84,11 @@ contains
       if (.not. allocated(plan%heats)) return
       start = sum([(passed(model%problem%steps(r)), r=1, s - 1)])
       do r = 1, size(plan%heats)
-        changes = changes .or. .not. has_acted(model, plan%heats(r), s) .or. &
+        changes = changes .or. plan%heats(r)%step == s .or. &
                   end_of(plan%heats(r), model%problem%amplitudes) > start
       end do
     end associate
   end function changes_temperature
-
-  !> Whether a rule has acted in a step before; rules have no effect in steps that find modes.
-  pure logical function has_acted(model, rule, s)
-    type(draft), intent(in) :: model
-    type(heat_rule), intent(in) :: rule
-    integer, intent(in) :: s !< step
-    integer :: r
-    has_acted = .false.
-    do r = rule%step, s - 1
-      has_acted = has_acted .or. .not. model%problem%steps(r)%procedure%finds_modes
-    end do
-  end function has_acted
 
   !> The total time from which on the temperatures of a rule stay as they are; infinite where the
   !> rule belongs to its step.
