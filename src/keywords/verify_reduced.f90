@@ -72,8 +72,8 @@ contains
                 'model holds a complete dam', faults)
   end subroutine refuse_stages
 
-  !> Whether a step may change temperatures. Histories over the total time that have ended before
-  !> the step do not.
+  !> Whether a step may change temperatures. Histories over the total time that have acted before
+  !> the step, and have ended there, do not.
   pure logical function changes_temperature(model, s) result(changes)
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
@@ -84,7 +84,8 @@ contains
       if (.not. allocated(plan%heats)) return
       start = sum([(passed(model%problem%steps(r)), r=1, s - 1)])
       do r = 1, size(plan%heats)
-        changes = changes .or. end_of(plan%heats(r), model%problem%amplitudes) > start
+        changes = changes .or. plan%heats(r)%step == s .or. &
+                  end_of(plan%heats(r), model%problem%amplitudes) > start
       end do
     end associate
   end function changes_temperature

@@ -149,6 +149,21 @@ def test_a_column_of_numbers_and_words(program_path, tmp_path, monkeypatch, caps
     assert "found 'none'" in table["message"][1]
 
 
+def test_numbers_of_the_table_are_those_of_a_deck(program_path, tmp_path, monkeypatch):
+    """1_2 was written as 12 and nan as an empty field; 2.D-1 made a column of texts."""
+    monkeypatch.chdir(tmp_path)
+    deck = (ROOT / "input/block_on_joint.inp").read_text()
+    deck = deck.replace("FRICTION=0.6", "FRICTION={FRICTION}")
+    (tmp_path / "block.inp").write_text(f"*HEADING\nrecord {{RECORD}} of {{WHO}}\n{deck}")
+    (tmp_path / "values.csv").write_text("FRICTION,RECORD,WHO\n6.D-1,1_2,nan\n0.6,1_3,nan\n")
+    words = ["block.inp", "--table", "values.csv", "-o", "out", "--program", str(program_path)]
+    assert batch.main([*words, "--", "-q"]) == 0
+    table = pd.read_csv("out/batch.csv", keep_default_na=False)
+    assert list(table["FRICTION"]) == [0.6, 0.6]
+    assert list(table["RECORD"]) == ["1_2", "1_3"]
+    assert list(table["WHO"]) == ["nan", "nan"]
+
+
 def test_fractiles_of_the_finished_cases(tmp_path):
     """0, 1, .. 10 of the cases that finished: fractiles are those of a uniform distribution."""
     rows = [[f"c{k}", "finished", float(k), 1.0] for k in range(11)] + [

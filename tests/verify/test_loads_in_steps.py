@@ -182,13 +182,14 @@ def test_a_load_given_in_a_step_of_modes(keyway):
     assert forces == pytest.approx(0.5 * FULL, rel=1e-8)
 
 
-def test_a_temperature_in_a_step_of_modes_has_no_effect(keyway):
+@pytest.mark.parametrize("card", ["", ", OP=NEW", ", AMPLITUDE=CLOCK"])
+def test_a_temperature_in_a_step_of_modes_has_no_effect(keyway, card):
     """As its warning says: a history over total time goes on."""
     blocks = brick((1, 1, 1), (1.0, 1.0, 1.0))
     clock = "*AMPLITUDE, NAME=CLOCK, TIME=TOTAL TIME\n0., 10., 10., 110.\n"
     cards = clock + "*BOUNDARY\nALL, 1, 2\n1, 3, 3\n"
     steps = step("*TEMPERATURE, AMPLITUDE=CLOCK\nALL, 1.\n" + OUTPUT)
-    steps += "*STEP\n*FREQUENCY\n1\n*TEMPERATURE\nALL, 7.\n*END STEP\n" + step()
+    steps += f"*STEP\n*FREQUENCY\n1\n*TEMPERATURE{card}\nALL, 7.\n*END STEP\n" + step()
     run = keyway(model(blocks, cards, law(0.0)) + steps)
     table = run.csv("node_ALL")
     assert "no effect in a step *FREQUENCY" in run.stderr

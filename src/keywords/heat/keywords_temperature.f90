@@ -13,7 +13,7 @@ module keywords_temperature
   implicit none
   private
   public :: describe_temperature, read_temperature, read_initial_temperatures
-  public :: keep_heats
+  public :: keep_heats, forget_heats
 
   character, parameter :: nl = new_line('a')
 
@@ -63,6 +63,7 @@ contains
       return
     end if
     rule%uses_total_time = this%word('TIME') == 'TOTAL TIME'
+    rule%step = model%num_steps + 1
     if (this%has('INPUT')) then
       call read_temperature_file(this, model, faults, rule)
       if (.not. allocated(rule%time)) return ! its faults are reported
@@ -154,6 +155,14 @@ contains
     if (size(kept) > 0) call move_alloc(kept, model%now%heats)
   end subroutine keep_heats
 
+  !> Leaves the cards of a step that finds modes without effect: the rules of the step before go on.
+  subroutine forget_heats(model)
+    type(draft), intent(inout) :: model
+    model%now%restores_temperature = .false.
+    if (allocated(model%now%heats)) deallocate (model%now%heats)
+    call keep_heats(model)
+  end subroutine forget_heats
+
   !> The rules of the step before whose clock is the total time, without the nodes to which a later
   !> rule of that step has given a temperature that stays.
   subroutine find_kept(model, kept)
@@ -176,12 +185,10 @@ contains
     type(draft), intent(in) :: model
     type(heat_rule), intent(in) :: rule, later(:)
     type(heat_rule) :: rest
-    logical :: is_settled(model%problem%mesh%num_nodes), is_idle
+    logical :: is_settled(model%problem%mesh%num_nodes)
     integer :: i
     is_settled = .false.
-    is_idle = model%problem%steps(model%num_steps)%procedure%finds_modes
     do i = 1, size(later)
-      if (is_idle) exit ! rules of a *FREQUENCY step have no effect
       if (.not. later(i)%goes_on(model%problem%amplitudes)) is_settled(later(i)%nodes) = .true.
     end do
     rest = rule

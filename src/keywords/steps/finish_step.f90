@@ -1,6 +1,6 @@
 !> Opens a step with the settings of the previous one, and closes it.
 module finish_step
-  use keywords_temperature, only: keep_heats
+  use keywords_temperature, only: forget_heats, keep_heats
   use kinds, only: rk
   use load_point, only: point_load
   use model_draft, only: add_load, draft, kept_support
@@ -60,6 +60,7 @@ contains
     call note_kept_supports(model)
     model%now%loads = [model%now%loads, model%active_loads%loads_of_step()]
     is_perturbation = model%now%procedure%finds_modes
+    if (is_perturbation) call forget_heats(model)
     end_time = model%total_time + model%now%duration
     associate (histories => model%problem%amplitudes, duration => model%now%duration)
       call model%active_loads%end_step(histories, duration, end_time, is_perturbation)

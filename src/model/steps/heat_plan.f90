@@ -14,6 +14,7 @@ module heat_plan
     real(rk), allocatable :: value(:, :) !< (times, nodes) [K]
     integer :: amplitude = 0 !< position; 0 for none
     logical :: uses_total_time = .false. !< of `time`, else the time within the step
+    integer :: step = 0 !< that gives the rule
   contains
     procedure :: goes_on
   end type heat_rule

@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from keyway_tools.deck_runs import EXTREMES, Record
 from keyway_tools.job_folder import summary_of
 
+from ..deck.fields import as_number
 from .cases import NAME, Case
 
 
@@ -129,7 +131,9 @@ def _values(rows: list[dict[str, str]]) -> list[dict[str, Any]]:
 
 
 def _numbers(column: list[str]) -> list[float] | None:
+    """Numbers as a deck reads them: 2.D3 is one; 1_2 and nan, which may be names, are none."""
     try:
-        return [float(text) for text in column]
+        found = [as_number(text) for text in column]
     except ValueError:
         return None
+    return found if all(map(isfinite, found)) else None
