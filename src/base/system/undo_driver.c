@@ -3,9 +3,9 @@
  * HDF5 overwrites its own structures in place, one after the other: between two of these writes the
  * file may be unreadable. The driver therefore holds new contents of pages that the file had at the
  * last flush in memory (undo_pages.h), where HDF5 reads them too. keyway_undo_mark, after a flush,
- * writes them all at once, in some microseconds each. New pages go to the end of the file at once,
- * where nothing refers to them yet. A process that is killed thus leaves the file as it was at the
- * last flush, unless it is killed within these microseconds.
+ * lets a child process write them all (waiting_pages.c), which a kill of the run does not end. New
+ * pages go to the end of the file at once, where nothing refers to them yet. A process that is
+ * killed thus leaves the file as it was at a flush.
  *
  * A write can fail: the disk is full. The driver then cuts the file to its length at the last flush,
  * after it has written old contents back where they were overwritten, and refuses all further
