@@ -62,7 +62,6 @@ set(sources
   system/undo_journal.f90
   system/undo_pages.c
   system/undo_restore.c
-  system/waiting_pages.c
   text/decimal_commas.f90
   text/invisible_letters.f90
   text/nearest_words.f90

@@ -58,10 +58,10 @@ DISKS = {
 }
 
 
-def build_library(folder: Path, source: Path = SOURCE) -> Path:
-    """A library to be preloaded: by default the one that makes a disk full for a process."""
-    library = folder / f"{source.stem}.so"
-    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, source, "-ldl"], check=True)
+def build_library(folder: Path) -> Path:
+    """The library that makes a disk full for a process."""
+    library = folder / "full_disk.so"
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, SOURCE, "-ldl"], check=True)
     return library
 
 

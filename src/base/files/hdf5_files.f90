@@ -78,7 +78,6 @@ contains
     call h5fopen_f(path, h5f_acc_rdwr_f, self%id, status, access_prp=access)
     call self%note(status)
     call h5pclose_f(access, ignored)
-    if (.not. self%has_failed) call mark_file(self)
   end subroutine open_again
 
   !> Starts the journal of a checkpoint, which can set the file back to this moment.
@@ -310,19 +309,14 @@ contains
   subroutine flush_file(self)
     class(hdf5_file), intent(inout) :: self
     integer :: status
+    logical :: is_good
     if (self%has_failed) return
     call h5fflush_f(self%id, h5f_scope_global_f, status)
     call self%note(status)
-    if (.not. self%has_failed) call mark_file(self)
-  end subroutine flush_file
-
-  !> Writes what has changed since the last mark.
-  subroutine mark_file(self)
-    class(hdf5_file), intent(inout) :: self
-    logical :: is_good
+    if (self%has_failed) return
     call mark_flushed(self%id, is_good)
     self%has_failed = .not. is_good
-  end subroutine mark_file
+  end subroutine flush_file
 
   !> Closes the file, unless something failed.
   subroutine close_file(self)

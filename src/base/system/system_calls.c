@@ -257,25 +257,17 @@ static void keep_lock(int file, const char *path) {
   if (!is_registered++) atexit(drop_lock);
 }
 
-/* Takes the lock file PATH. Returns its descriptor, or a negative number as keyway_take_lock. A
- * process that was killed may have the lock for some milliseconds more, until its last pages are
- * written (waiting_pages.c). */
+/* Takes the lock file PATH. Returns its descriptor, or a negative number as keyway_take_lock. */
 static int take_lock(const char *path, char *holder, size_t room) {
-  static const struct timespec moment = {0, 1000000};
   char host[256] = "", text[300];
   struct stat opened, named;
-  int file, length, moments = 1000;
+  int file, length;
   gethostname(host, sizeof host - 1);
   for (;;) {
     holder[0] = '\0';
     file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file < 0) return -1;
     if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      if (moments-- > 0) {
-        nanosleep(&moment, NULL);
-        close(file);
-        continue;
-      }
       await_holder(file, holder, room);
       close(file);
       return -2;

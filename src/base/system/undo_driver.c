@@ -1,20 +1,16 @@
-/* A file driver of HDF5 that keeps a file readable and can set it back to an earlier moment.
+/* A file driver of HDF5 that can set a file back to an earlier moment.
  *
- * HDF5 overwrites its own structures in place, one after the other: between two of these writes the
- * file may be unreadable. The driver therefore holds new contents of pages that the file had at the
- * last flush in memory (undo_pages.h), where HDF5 reads them too. keyway_undo_mark, after a flush,
- * lets a child process write them all (waiting_pages.c), which a kill of the run does not end. New
- * pages go to the end of the file at once, where nothing refers to them yet. A process that is
- * killed thus leaves the file as it was at a flush.
+ * HDF5 overwrites its own structures in place. A process that is killed meanwhile leaves a file that
+ * may be unreadable, and a continued run needs the file as it was at the checkpoint. After
+ * keyway_undo_start the driver therefore copies each page of the file to a journal before the first
+ * write into the page. undo_restore.c writes these pages back and cuts the file to its length. The
+ * journal begins with a digest of the file (undo_pages.h), by which a file is known that was changed
+ * or damaged between two runs.
  *
- * A write can fail: the disk is full. The driver then cuts the file to its length at the last flush,
- * after it has written old contents back where they were overwritten, and refuses all further
- * writes. The file is readable and holds what was written before.
- *
- * A continued run needs the file as it was at the checkpoint. After keyway_undo_start the driver
- * copies each page of the file to a journal before the first write into the page. undo_restore.c
- * writes these pages back and cuts the file to its length. The journal begins with a digest of the
- * file, by which a file is known that was changed or damaged between two runs. */
+ * A write can fail in the middle of these structures: the disk is full. The driver therefore holds
+ * the pages that were replaced since the last flush in memory as well. After a failure it writes
+ * them back, which needs no new room on the disk, cuts the file to its length at that flush, and
+ * refuses all further writes. The file is then readable and holds what was written before. */
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
 #include "undo_pages.h"
@@ -31,10 +27,10 @@
 #include <H5FDdevelop.h>
 #endif
 
-/* Pages that are in the journal, of those that the file had at the checkpoint. */
+/* Pages that change after a moment, when the file had the length `length`. */
 typedef struct {
-  haddr_t length; /* of the file at that moment */
-  unsigned char *has_page; /* one for each page below that length; NULL: there is no journal */
+  haddr_t length;
+  unsigned char *has_page; /* one for each page below that length; NULL: no page is of interest */
 } page_set;
 
 typedef struct {
@@ -42,9 +38,10 @@ typedef struct {
   int descriptor;
   haddr_t end_of_address, end_of_file;
   int journal; /* -1: none */
-  page_set kept;
-  waiting_pages waiting; /* since the last flush */
-  int has_new_length; /* HDF5 has set the end of the file */
+  page_set kept; /* in the journal */
+  page_set held; /* in `copies`, since the last flush */
+  page_record *copies;
+  size_t num_copies, room_for_copies;
   int is_broken; /* a write has failed: the file stays as it was at the last flush */
   uint64_t *hashes; /* of blocks; 0: not known since a write */
   haddr_t room_for_hashes;
@@ -64,6 +61,15 @@ static void end_pages(page_set *self) {
   self->has_page = NULL;
 }
 
+/* Reads a page that a set does not have yet. 1: it is read, 0: the set has it, -1: a failure. */
+static int read_page(const undo_file *self, const page_set *pages, haddr_t page, page_record *copy) {
+  if (pages->has_page[page]) return 0;
+  copy->place[0] = page * page_size;
+  copy->place[1] = page_size;
+  if (copy->place[0] + page_size > pages->length) copy->place[1] = pages->length - copy->place[0];
+  return keyway_get_all(self->descriptor, copy->bytes, copy->place[1], (off_t)copy->place[0]) < 0 ? -1 : 1;
+}
+
 /* Adds a page to the journal; a record that is cut off is removed again. */
 static int keep_page(undo_file *self, page_record *copy) {
   off_t tail = lseek(self->journal, 0, SEEK_END);
@@ -74,21 +80,27 @@ static int keep_page(undo_file *self, page_record *copy) {
   return -1;
 }
 
-/* Copies the pages of [first, end) as they are on the disk to the journal, which does not have them
- * yet. */
-static int keep_pages(undo_file *self, haddr_t first, haddr_t end) {
-  page_set *pages = &self->kept;
+static int hold_page(undo_file *self, page_record *copy) {
+  if (self->num_copies == self->room_for_copies) {
+    size_t room = 2 * self->room_for_copies + 16;
+    page_record *copies = realloc(self->copies, room * sizeof *copies);
+    if (!copies) return -1;
+    self->copies = copies;
+    self->room_for_copies = room;
+  }
+  self->copies[self->num_copies++] = *copy;
+  return 0;
+}
+
+/* Copies the pages of [first, end) to where they belong, those of a set that it does not have yet. */
+static int copy_pages(undo_file *self, page_set *pages, haddr_t first, haddr_t end,
+                      int (*store)(undo_file *, page_record *)) {
   page_record copy;
-  if (self->journal < 0 || !pages->has_page) return 0;
+  if (!pages->has_page) return 0;
   if (end > pages->length) end = pages->length;
   for (haddr_t page = first / page_size; page * page_size < end; page++) {
-    if (pages->has_page[page]) continue;
-    copy.place[0] = page * page_size;
-    copy.place[1] = page_size;
-    if (copy.place[0] + page_size > pages->length) copy.place[1] = pages->length - copy.place[0];
-    if (keyway_get_all(self->descriptor, copy.bytes, copy.place[1], (off_t)copy.place[0]) < 0 ||
-        keep_page(self, &copy) < 0)
-      return -1;
+    int status = read_page(self, pages, page, &copy);
+    if (status < 0 || (status > 0 && store(self, &copy) < 0)) return -1;
     pages->has_page[page] = 1;
   }
   return 0;
@@ -125,39 +137,24 @@ static int find_digest(undo_file *self, uint64_t *digest) {
   return status;
 }
 
-/* Before [first, end) changes on the disk. */
+/* Before [first, end) changes: its pages go to memory and to the journal. */
 static int save_pages(undo_file *self, haddr_t first, haddr_t end) {
-  return forget_hashes(self, first, end) < 0 || keep_pages(self, first, end) < 0 ? -1 : 0;
+  if (forget_hashes(self, first, end) < 0) return -1;
+  if (copy_pages(self, &self->held, first, end, hold_page) < 0) return -1;
+  return self->journal < 0 ? 0 : copy_pages(self, &self->kept, first, end, keep_page);
 }
 
 /* After a failed write: the file becomes what it was at the last flush, and stays so. */
 static int give_up(undo_file *self) {
   self->is_broken = 1;
-  if (!self->waiting.place_of) return -1;
-  self->end_of_file = self->waiting.length;
-  self->waiting.count = 0;
-  if (ftruncate(self->descriptor, (off_t)self->end_of_file) != 0) return -1;
+  if (!self->held.has_page) return -1;
+  for (size_t i = 0; i < self->num_copies; i++)
+    if (keyway_put_all(self->descriptor, self->copies[i].bytes, self->copies[i].place[1],
+                (off_t)self->copies[i].place[0]) < 0)
+      return -1;
+  if (ftruncate(self->descriptor, (off_t)self->held.length) != 0) return -1;
+  self->end_of_file = self->held.length;
   return -1;
-}
-
-/* Gives the file the length that HDF5 takes it to have. */
-static int write_length(undo_file *self) {
-  struct stat found;
-  if (fstat(self->descriptor, &found) != 0) return -1;
-  if (save_pages(self, self->end_of_file, (haddr_t)found.st_size) < 0) return -1;
-  self->has_new_length = 0;
-  return ftruncate(self->descriptor, (off_t)self->end_of_file);
-}
-
-/* Writes the pages that wait: first to the journal what they replace. */
-static int write_waiting(undo_file *self) {
-  const waiting_pages *waiting = &self->waiting;
-  for (size_t i = 0; i < waiting->count; i++) {
-    const uint64_t *place = waiting->pages[i].place;
-    if (save_pages(self, place[0], place[0] + place[1]) < 0) return -1;
-  }
-  if (keyway_write_waiting(&self->waiting, self->descriptor) < 0) return -1;
-  return self->has_new_length ? write_length(self) : 0;
 }
 
 static void end_journal(undo_file *self) {
@@ -191,10 +188,10 @@ static H5FD_t *open_file(const char *name, unsigned flags, hid_t fapl, haddr_t m
 
 static herr_t close_file(H5FD_t *file) {
   undo_file *self = (undo_file *)file;
-  int status = self->is_broken || write_waiting(self) == 0 ? 0 : give_up(self);
-  if (close(self->descriptor) != 0) status = -1;
+  int status = close(self->descriptor);
   end_journal(self);
-  keyway_end_waiting(&self->waiting);
+  end_pages(&self->held);
+  free(self->copies);
   free(self->hashes);
   free(self);
   return status == 0 ? 0 : -1;
@@ -239,38 +236,33 @@ static herr_t get_handle(H5FD_t *file, hid_t fapl, void **handle) {
 
 static herr_t read_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t address, size_t size,
                          void *bytes) {
-  const undo_file *self = (const undo_file *)file;
   (void)kind;
   (void)plan;
-  if (keyway_get_all(self->descriptor, bytes, size, (off_t)address) < 0) return -1;
-  keyway_read_waiting(&self->waiting, address, size, bytes);
-  return 0;
+  return keyway_get_all(((undo_file *)file)->descriptor, bytes, size, (off_t)address);
 }
 
 static herr_t write_bytes(H5FD_t *file, H5FD_mem_t kind, hid_t plan, haddr_t address, size_t size,
                           const void *bytes) {
   undo_file *self = (undo_file *)file;
-  size_t own = keyway_part_that_waits(&self->waiting, address, size), rest = size - own;
   (void)kind;
   (void)plan;
   if (self->is_broken) return -1;
-  if (keyway_let_wait(&self->waiting, self->descriptor, address, own, bytes) < 0 ||
-      save_pages(self, address + own, address + size) < 0 ||
-      keyway_put_all(self->descriptor, (const char *)bytes + own, rest, (off_t)(address + own)) < 0)
-    return give_up(self);
+  if (save_pages(self, address, address + size) < 0) return give_up(self);
+  if (keyway_put_all(self->descriptor, bytes, size, (off_t)address) < 0) return give_up(self);
   if (address + size > self->end_of_file) self->end_of_file = address + size;
   return 0;
 }
 
-/* The file gets this length when the pages that wait are written. */
+/* Gives the file the length that HDF5 takes it to have. */
 static herr_t set_length(H5FD_t *file, hid_t plan, hbool_t is_closing) {
   undo_file *self = (undo_file *)file;
   (void)plan;
   (void)is_closing;
   if (self->is_broken) return -1;
   if (self->end_of_address == self->end_of_file) return 0;
+  if (save_pages(self, self->end_of_address, self->end_of_file) < 0) return give_up(self);
+  if (ftruncate(self->descriptor, (off_t)self->end_of_address) != 0) return give_up(self);
   self->end_of_file = self->end_of_address;
-  self->has_new_length = 1;
   return 0;
 }
 
@@ -324,12 +316,12 @@ static undo_file *record_of(int64_t file) {
   return handle;
 }
 
-/* HDF5 has flushed the file: it becomes so on the disk. 0: done. */
+/* The file was flushed: after a failed write it becomes what it is now. 0: done. */
 int keyway_undo_mark(int64_t file) {
   undo_file *self = record_of(file);
-  if (!self || self->is_broken) return -1;
-  if (write_waiting(self) < 0) return give_up(self);
-  return keyway_start_waiting(&self->waiting, self->end_of_file);
+  if (!self) return -1;
+  self->num_copies = 0;
+  return start_pages(&self->held, self->end_of_file);
 }
 
 /* Starts the journal of a checkpoint: the present file, which was flushed, is what a restore gives.

@@ -1,6 +1,5 @@
-!> Keeps an HDF5 file readable, and sets it back to a checkpoint: the file driver holds back what
-!> HDF5 overwrites until a flush, and keeps what such writes replace (undo_driver.c); undo_restore.c
-!> writes this back.
+!> Sets an HDF5 file back to a checkpoint: the file driver keeps what later writes replace
+!> (undo_driver.c), undo_restore.c writes this back.
 module undo_journal
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int64_t, c_null_char
   use hdf5, only: hid_t
@@ -75,8 +74,8 @@ contains
     undo_access = int(c_access(), hid_t)
   end function undo_access
 
-  !> A file that is open with `undo_access` was flushed, or just opened: it becomes so on the disk
-  !> at once, and a write that fails later sets it back to its present state.
+  !> A file that is open with `undo_access` was flushed: a write that fails later sets it back to
+  !> its present state.
   subroutine mark_flushed(file, is_good)
     integer(hid_t), intent(in) :: file
     logical, intent(out) :: is_good

@@ -1,5 +1,4 @@
-/* Pages of a file that wait to be written; the journal of undo_driver.c, and the digest of a file,
- * which undo_restore.c compares.
+/* The journal of undo_driver.c, and the digest of a file, which undo_restore.c compares.
  *
  * A journal begins with a `journal_top`; records follow: address, length, checksum, bytes. A record
  * is complete before the file changes, so a last record that is cut off belongs to a page that is
@@ -40,28 +39,6 @@ uint64_t keyway_hash_of_record(const page_record *record);
 uint64_t keyway_hash_of_block(uint64_t block, const void *bytes);
 void keyway_start_top(journal_top *top, int number, uint64_t length, uint64_t digest);
 int keyway_is_top(const journal_top *top);
-
-/* New contents of pages that the file had at a flush. */
-typedef struct {
-  uint64_t length;    /* of the file at that flush */
-  uint32_t *place_of; /* of each page below that length, from 1; 0: it is as on the disk. NULL:
-                         there was no flush */
-  page_record *pages; /* with the bytes that the file will have */
-  size_t count, room;
-} waiting_pages;
-
-/* No page waits; the file has this length. 0: done. */
-int keyway_start_waiting(waiting_pages *self, uint64_t length);
-void keyway_end_waiting(waiting_pages *self);
-/* How many of `size` bytes lie in pages that the file had. */
-size_t keyway_part_that_waits(const waiting_pages *self, uint64_t address, size_t size);
-/* Bytes in such pages. 0: done. */
-int keyway_let_wait(waiting_pages *self, int descriptor, uint64_t address, size_t size,
-                    const void *bytes);
-/* Puts what waits in place of what was read from the file. */
-void keyway_read_waiting(const waiting_pages *self, uint64_t address, size_t size, void *bytes);
-/* Writes all pages, one directly after the other. After a failure the old pages are back. 0: done. */
-int keyway_write_waiting(const waiting_pages *self, int descriptor);
 
 /* 0: all bytes are written. */
 int keyway_put_all(int descriptor, const void *bytes, size_t size, off_t place);
