@@ -195,6 +195,9 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
         "--increment", type=above_zero, default=0.01, help="of the dynamic step [s] (0.01)"
     )
     group.add_argument(
+        "--controls", default=DeckOptions.controls, help="parameters of its *CONTROLS (none)"
+    )
+    group.add_argument(
         "--damping",
         type=from_zero,
         nargs=3,
@@ -294,6 +297,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
         motion_dt=motion_dt,
         duration=chosen.duration,
         increment=chosen.increment,
+        controls=chosen.controls,
         damping=tuple(chosen.damping),
         damping_base=chosen.damping_base,
         uplift=chosen.uplift,

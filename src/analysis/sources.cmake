@@ -72,6 +72,7 @@ set(sources
   system/hht_scheme.f90
   system/joint_water.f90
   system/kept_solvers.f90
+  system/next_acceleration.f90
   system/step_damping.f90
   system/step_equilibrium.f90
   system/step_loads.f90

@@ -168,12 +168,15 @@ int keyway_cholmod_factorise(void *handle, int n, const int *start, const int *u
   return c->common.status;
 }
 
-/* y = L^-1 y, or y = L^-T y, on a part of the supernodes, in the order of elimination. Returns 0
- * for success. */
-int keyway_cholmod_substitute(void *handle, int part, int is_forward, int n, double *y)
+/* y = L^-1 y, or y = L^-T y, on a part of the supernodes, in the order of elimination; with
+ * `in_single` by the copy in single precision. Returns 0 for success. */
+int keyway_cholmod_substitute(void *handle, int in_single, int part, int is_forward, int n,
+                              double *y)
 {
   struct keyway_cholmod *c = handle;
-  struct keyway_supernodes nodes = keyway_supernodes_of(c);
+  struct keyway_supernodes nodes =
+    in_single ? keyway_supernodes_of_copy(c) : keyway_supernodes_of(c);
+  if (in_single && !c->copy) return 1;
   if (!c->work) c->work = malloc(((size_t)n + 1) * sizeof *c->work);
   if (!c->work || (part != KEYWAY_WHOLE && !c->is_upper) || n != (int)c->factor->n) return 1;
   if (c->trees.num_trees > 0 && is_forward)
@@ -195,8 +198,8 @@ static int solve_columns(struct keyway_cholmod *c, int n, int columns, double *b
   int status = y == NULL;
   for (int j = 0; j < columns && status == 0; j++, b += n) {
     for (int k = 0; k < n; k++) y[k] = b[perm[k]];
-    status = keyway_cholmod_substitute(c, KEYWAY_WHOLE, 1, n, y) ||
-             keyway_cholmod_substitute(c, KEYWAY_WHOLE, 0, n, y);
+    status = keyway_cholmod_substitute(c, 0, KEYWAY_WHOLE, 1, n, y) ||
+             keyway_cholmod_substitute(c, 0, KEYWAY_WHOLE, 0, n, y);
     for (int k = 0; k < n; k++) b[perm[k]] = y[k];
   }
   free(y);

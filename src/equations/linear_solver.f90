@@ -24,6 +24,7 @@ module linear_solver
     procedure :: choose_active => activate_all
     procedure :: substitute => refuse_part
     procedure :: keep_single => keep_double
+    procedure :: copy_single => copy_nothing
     procedure :: num_entries => unknown_entries
     procedure :: describe_iterations => describe_none
     procedure :: has_patches => has_no_patches
@@ -116,6 +117,14 @@ contains
     is_kept = size(unknown) < 0
   end subroutine keep_double
 
+  !> Keeps a copy of the factor in single precision until the next factorisation, for `substitute`.
+  !> Not every solver can; none does without memory.
+  subroutine copy_nothing(self, has_copy)
+    class(equation_solver), intent(inout) :: self
+    logical, intent(out) :: has_copy
+    has_copy = self%failed_unknown > huge(1) - 1
+  end subroutine copy_nothing
+
   !> Entries of the factor; 0 where the solver does not say.
   integer(long) function unknown_entries(self) result(entries)
     class(equation_solver), intent(in) :: self
@@ -165,8 +174,9 @@ contains
   end subroutine keep_nothing
 
   !> y = L^-1 y or y = L^-T y with a part of the factor, in the order of elimination.
-  subroutine refuse_part(self, part, is_forward, y, error)
+  subroutine refuse_part(self, in_single, part, is_forward, y, error)
     class(equation_solver), intent(inout) :: self
+    logical, intent(in) :: in_single !< with the copy of `copy_single`
     integer, intent(in) :: part !< whole_factor, lower_part or upper_part
     logical, intent(in) :: is_forward
     real(rk), intent(inout) :: y(:) !< (free unknowns)

@@ -1,7 +1,12 @@
 !> Symmetric positive definite equations by CHOLMOD: supernodal L L^T, METIS, the unknowns of
 !> joints last.
 module solver_cholmod
-  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_loc, c_null_ptr, c_ptr
+  use cholmod_calls, only: keyway_cholmod_start, keyway_cholmod_finish, keyway_cholmod_analyse, &
+                           keyway_cholmod_factorise, keyway_cholmod_solve, keyway_cholmod_end, &
+                           keyway_cholmod_choose, keyway_cholmod_substitute, &
+                           keyway_cholmod_round, keyway_cholmod_copy, keyway_cholmod_statistics, &
+                           keyway_cholmod_order
   use cholmod_status, only: plan_failure
   use kinds, only: rk, long
   use errors, only: error_type, raise, system_failed
@@ -32,108 +37,10 @@ module solver_cholmod
   contains
     procedure :: analyse, factorise, solve, statistics
     procedure :: take_schur_block, take_top, forward_substitute, backward_substitute
-    procedure :: choose_active, substitute, keep_single, num_entries
+    procedure :: choose_active, substitute, keep_single, copy_single, num_entries
     procedure :: has_patches, take_patch, solve_patch, drop_patch
     final :: release
   end type cholmod_solver
-
-  interface
-    function keyway_cholmod_start() result(handle) bind(c)
-      import :: c_ptr
-      implicit none
-      type(c_ptr) :: handle
-    end function keyway_cholmod_start
-
-    subroutine keyway_cholmod_finish(handle) bind(c)
-      import :: c_ptr
-      implicit none
-      type(c_ptr), value :: handle
-    end subroutine keyway_cholmod_finish
-
-    function keyway_cholmod_analyse(handle, n, start, used, row, m, order) result(status) bind(c)
-      import :: c_ptr, c_int
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n, m
-      integer(c_int), intent(in) :: start(n + 1), used(n), row(start(n + 1))
-      type(c_ptr), value :: order
-      integer(c_int) :: status
-    end function keyway_cholmod_analyse
-
-    function keyway_cholmod_factorise(handle, n, start, used, row, values, column, ratio) &
-      result(status) bind(c)
-      import :: c_ptr, c_int, c_double
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n
-      integer(c_int), intent(in) :: start(n + 1), used(n), row(start(n + 1))
-      real(c_double), intent(in) :: values(start(n + 1))
-      integer(c_int), intent(out) :: column
-      real(c_double), intent(out) :: ratio
-      integer(c_int) :: status
-    end function keyway_cholmod_factorise
-
-    function keyway_cholmod_solve(handle, n, columns, b) result(status) bind(c)
-      import :: c_ptr, c_int, c_double
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n, columns
-      real(c_double), intent(inout) :: b(n, columns)
-      integer(c_int) :: status
-    end function keyway_cholmod_solve
-
-    function keyway_cholmod_end(handle, n, m, block, unknown) result(status) bind(c)
-      import :: c_ptr, c_int, c_double
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n, m
-      real(c_double), intent(out) :: block(m, m)
-      integer(c_int), intent(out) :: unknown(m)
-      integer(c_int) :: status
-    end function keyway_cholmod_end
-
-    function keyway_cholmod_choose(handle, n, count, unknown) result(share) bind(c)
-      import :: c_ptr, c_int, c_double
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n, count
-      integer(c_int), intent(in) :: unknown(count)
-      real(c_double) :: share
-    end function keyway_cholmod_choose
-
-    function keyway_cholmod_substitute(handle, part, is_forward, n, y) result(status) bind(c)
-      import :: c_ptr, c_int, c_double
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: part, is_forward, n
-      real(c_double), intent(inout) :: y(n)
-      integer(c_int) :: status
-    end function keyway_cholmod_substitute
-
-    function keyway_cholmod_round(handle, n, count, unknown) result(status) bind(c)
-      import :: c_ptr, c_int
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n, count
-      integer(c_int), intent(in) :: unknown(count)
-      integer(c_int) :: status
-    end function keyway_cholmod_round
-
-    subroutine keyway_cholmod_statistics(handle, entries, bytes, peak) bind(c)
-      import :: c_ptr, c_double
-      implicit none
-      type(c_ptr), value :: handle
-      real(c_double), intent(out) :: entries, bytes, peak
-    end subroutine keyway_cholmod_statistics
-
-    subroutine keyway_cholmod_order(handle, n, order) bind(c)
-      import :: c_ptr, c_int
-      implicit none
-      type(c_ptr), value :: handle
-      integer(c_int), value :: n
-      integer(c_int), intent(out) :: order(n)
-    end subroutine keyway_cholmod_order
-  end interface
 
 contains
 
@@ -292,13 +199,21 @@ contains
     call choose_top(self%handle, self%num_free, unknown, top)
   end subroutine take_top
 
+  !> Keeps a copy of the factor in single precision.
+  subroutine copy_single(self, has_copy)
+    class(cholmod_solver), intent(inout) :: self
+    logical, intent(out) :: has_copy
+    has_copy = self%num_free > 0
+    if (has_copy) has_copy = keyway_cholmod_copy(self%handle) == 0
+  end subroutine copy_single
+
   !> Replaces b by L^-1 P b, in the order of elimination.
   subroutine forward_substitute(self, b, error)
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:)
     type(error_type), allocatable, intent(out) :: error
     b = b(self%order)
-    call self%substitute(whole_factor, .true., b, error)
+    call self%substitute(.false., whole_factor, .true., b, error)
   end subroutine forward_substitute
 
   !> Replaces y by P^T L^-T y, in the order of the unknowns.
@@ -306,19 +221,21 @@ contains
     class(cholmod_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:)
     type(error_type), allocatable, intent(out) :: error
-    call self%substitute(whole_factor, .false., b, error)
+    call self%substitute(.false., whole_factor, .false., b, error)
     b(self%order) = b
   end subroutine backward_substitute
 
   !> y = L^-1 y or L^-T y on a part of the factor, in the order of elimination.
-  subroutine substitute(self, part, is_forward, y, error)
+  subroutine substitute(self, in_single, part, is_forward, y, error)
     class(cholmod_solver), intent(inout) :: self
+    logical, intent(in) :: in_single
     integer, intent(in) :: part
     logical, intent(in) :: is_forward
     real(rk), intent(inout) :: y(:)
     type(error_type), allocatable, intent(out) :: error
     if (self%num_free == 0) return
-    if (keyway_cholmod_substitute(self%handle, part, merge(1, 0, is_forward), size(y), y) /= 0) then
+    if (keyway_cholmod_substitute(self%handle, merge(1, 0, in_single), part, &
+                                  merge(1, 0, is_forward), size(y), y) /= 0) then
       call raise(error, 'no memory to solve the equations', system_failed)
     end if
   end subroutine substitute

@@ -3,6 +3,7 @@ set(sources
   cholmod_bridge.c
   column_products.f90
   distributed/petsc_equations.f90
+  elimination/cholmod_calls.f90
   elimination/cholmod_status.f90
   elimination/factor_top.f90
   elimination/group_dissection.f90
@@ -23,6 +24,7 @@ set(sources
   supernodes/active_solve.f90
   supernodes/factor_top.c
   supernodes/fused_columns.c
+  supernodes/last_solution.f90
   supernodes/refined_solve.f90
   supernodes/selected_inverse.c
   supernodes/single_factor.c

@@ -205,7 +205,8 @@ contains
               own%contact(4), own%balanced(4), own%viscous(4), own%viscous_rate(4), &
               own%lost_damping(4), own%correction(4), own%carried_correction(4), own%slope(4), &
               own%momentum(4), own%inertia(4), own%carried(3, 4), own%jump_rate(3, 4), &
-              own%bend(4), own%release(4), own%thermal(4))
+              own%bend(4), own%release(4), own%thermal(4), own%last_a(4), &
+              own%residual(3))
     call fill(own%q, n)
     call fill(own%v, n)
     call fill(own%a, n)
@@ -221,7 +222,10 @@ contains
     call fill(own%carried_correction, n)
     call fill(own%momentum, n)
     call fill(own%inertia, n)
+    call fill(own%residual, n)
+    call fill(own%last_a, n)
     call fill(own%acceleration_ratio, n)
+    call fill(own%last_ratio, n)
     call fill(own%slope, n)
     call fill(own%bend, n)
     call fill(own%release, n)

@@ -1,4 +1,4 @@
-"""*CONTROLS, PRECISION=SINGLE: the results of a factor in double precision.
+"""*CONTROLS, PRECISION=SINGLE and MIXED: the results of a factor in double precision.
 
 A solve leaves at most 0.3 of the admissible residual (theory.md, 8). With RESIDUAL=1e-6 forces are
 exact to 1e-6 of the largest force, and so are displacements and openings of a dam, whose increments
@@ -6,6 +6,7 @@ are well conditioned. With smaller residuals the agreement follows.
 """
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from harness import ROOT
 from keyway_tools.box_mesh import box_mesh
 
 SINGLE = "*CONTROLS, PRECISION=SINGLE"
+MIXED = "*CONTROLS, PRECISION=MIXED"
 PLAIN = "*CONTROLS"
 
 
@@ -30,27 +32,37 @@ def difference(first, second, columns) -> float:
     )
 
 
+def solutions_in_single(run) -> int:
+    """How many solutions the copy of PRECISION=MIXED has given."""
+    log = (run.folder / f"{run.job}.log").read_text()
+    return int(re.search(r"(\d+) of the last \d+ solutions in single precision", log)[1])
+
+
+@pytest.mark.parametrize("kind", [SINGLE, MIXED])
 @pytest.mark.parametrize(
     ("residual", "threads", "apart"), [("1e-6", 1, 1e-6), ("1e-9", 1, 1e-8), ("1e-9", 2, 1e-8)]
 )
-def test_jointed_dam(keyway, residual, threads, apart):
+def test_jointed_dam(keyway, kind, residual, threads, apart):
     """Openings and displacements of a dam whose joints open and slide."""
     sharp = f", RESIDUAL={residual}, INCREMENT=1e-9"
     double, single = (
-        run_trial(keyway, shaken(kind + sharp), "-j", str(threads), name=name)
-        for kind, name in ((PLAIN, "double"), (SINGLE, "single"))
+        run_trial(keyway, shaken(controls + sharp), "-j", str(threads), name=name)
+        for controls, name in ((PLAIN, "double"), (kind, "single"))
     )
     assert np.abs(double.csv("joint_JOINT1")["opening"]).max() > 1e-3
     for table, columns in (("node_CROWN_CREST", ("U1", "U2", "U3")), ("joint_JOINT1", ["opening"])):
         assert difference(double.csv(table), single.csv(table), columns) <= apart
 
 
-def test_dam_without_joints(keyway):
+@pytest.mark.parametrize("kind", [SINGLE, MIXED])
+def test_dam_without_joints(keyway, kind):
     """Increments that go on smoothly are exact to more digits than the residual asks for."""
     double, single = (
-        run_trial(keyway, shaken(kind, num_joints=0), name=name)
-        for kind, name in (("*CONTROLS, RESIDUAL=1e-6", "double"), (SINGLE, "single"))
+        run_trial(keyway, shaken(controls, num_joints=0), name=name)
+        for controls, name in (("*CONTROLS, RESIDUAL=1e-6", "double"), (kind, "single"))
     )
+    if kind == MIXED:
+        assert solutions_in_single(single) > 0
     tables = [run.csv("node_CROWN_CREST") for run in (double, single)]
     assert difference(*tables, ("U1", "U2", "U3")) <= 1e-7
 
@@ -111,8 +123,9 @@ def test_thinnest_plate(keyway):
     assert np.abs(double - single).max() <= asymmetry
 
 
-def test_cracking_monolith(keyway):
-    """Concrete that cracks: every iteration on the solids solves for all unknowns.
+@pytest.mark.parametrize("kind", [SINGLE, MIXED])
+def test_cracking_monolith(keyway, kind):
+    """Concrete that cracks: with SINGLE every iteration on the solids solves for all unknowns.
 
     RESIDUAL=1e-9 is exact to 1e-9 of the forces; cracks that open and close make up to 1e-5 of it.
     """
@@ -121,19 +134,43 @@ def test_cracking_monolith(keyway):
     text = source.read_text().replace("0.01, 6.,", "0.01, 1.2,")
     double, single = (
         keyway(
-            text.replace("*STATIC", f"{kind}, RESIDUAL=1e-9\n*STATIC", 1),
+            text.replace("*STATIC", f"{controls}, RESIDUAL=1e-9\n*STATIC", 1),
             name=name,
             files={motion.name: motion.read_text()},
         )
-        for kind, name in ((PLAIN, "double"), (SINGLE, "single"))
+        for controls, name in ((PLAIN, "double"), (kind, "single"))
     )
     tables = [run.csv("damage") for run in (double, single)]
     assert tables[0]["cracking"][-1] > 1.0
     assert difference(*tables, ["cracking"]) <= 1e-5
 
 
-def test_full_newton_is_refused(keyway):
+@pytest.mark.parametrize("kind", ["SINGLE", "MIXED"])
+def test_full_newton_is_refused(keyway, kind):
     """The full solver factors in every iteration: one line says what to leave out."""
-    trial = shaken(SINGLE + ", JOINT SOLVER=FULL")
+    trial = shaken(f"*CONTROLS, PRECISION={kind}, JOINT SOLVER=FULL")
     run = run_trial(keyway, trial, code=1)
-    assert "leave PRECISION=SINGLE out" in run.json["message"]
+    assert f"leave PRECISION={kind} out" in run.json["message"]
+
+
+def test_cracking_monolith_in_small_increments(keyway):
+    """The default residual admits the copy where increments are small; cracking is the same.
+
+    RESIDUAL=1e-6 is exact to 1e-6 of the forces; cracks that open and close make up to 1e-2 of it.
+    """
+    source = ROOT / "input" / "cracking_monolith.inp"
+    motion = source.with_name("cracking_monolith_motion.txt")
+    text = source.read_text().replace("0.01, 6.,", "0.001, 0.8,")
+    double, mixed = (
+        keyway(
+            text.replace("*STATIC", f"{controls}\n*STATIC", 1),
+            name=name,
+            files={motion.name: motion.read_text()},
+        )
+        for controls, name in (("*CONTROLS, RESIDUAL=1e-6", "double"), (MIXED, "mixed"))
+    )
+    assert solutions_in_single(mixed) > 0
+    tables = [run.csv("damage") for run in (double, mixed)]
+    assert tables[0]["cracking"][-1] > 1.0
+    assert difference(*tables, ["cracking"]) <= 1e-2
+    assert max(step["energy"]["error"] for step in mixed.json["steps"]) <= 1e-6

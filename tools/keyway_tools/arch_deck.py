@@ -37,6 +37,7 @@ class DeckOptions:
     duration: float = 10.0  # of the dynamic step [s]
     increment: float = 0.01  # [s]
     alpha: float = -0.05
+    controls: str = ""  # parameters of *CONTROLS of the dynamic step
     damping: tuple[float, float, float] = (0.05, 2.0, 10.0)  # ratio at two frequencies [Hz]
     damping_base: str = "INITIAL"  # or CURRENT: the stiffness with its damage
     # of weight and water [s]; it matters to concrete with a viscosity alone
@@ -215,6 +216,8 @@ def _dynamic_step(mesh: BrickMesh, options: DeckOptions) -> list[str]:
     ratio, f1, f2 = options.damping
     parts = ["**", "** Earthquake; motion relative to the base"]
     parts += ["*STEP, NAME=EARTHQUAKE, INC=1000000"]
+    if options.controls:
+        parts += [f"*CONTROLS, {options.controls}"]
     times = f"{options.increment:g}, {options.duration:g}"
     if options.concrete_cards:  # cracks may need smaller increments
         parts += [f"*DYNAMIC, ALPHA={options.alpha:g}"]

@@ -131,7 +131,7 @@ contains
     if (allocated(error)) return
     solids%solver%costs = results%costs
     ! Refined solves are complete ones.
-    solids%solver%may_repeat = has_active_part .and. .not. plan%controls%keeps_single
+    solids%solver%may_repeat = has_active_part .and. plan%controls%precision /= 'SINGLE'
   end subroutine make_step_solver
 
   !> Forces at the start of the step and the acceleration that balances them: all of them, or after

@@ -15,6 +15,7 @@ submodule(hht_integrator) hht_increment
   use dynamic_step, only: largest_force
   use joint_forces, only: gather_jumps
   use increment_balance, only: increment_task
+  use next_acceleration, only: find_trend, expected_acceleration
   use step_equilibrium, only: add_moving_supports
   use support_rates, only: find_support_rates, has_moving_supports
   implicit none
@@ -34,6 +35,7 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(increment_task) :: task
+    real(rk) :: residual(self%system%matrix%num_free)
     associate (system => self%system, scheme => self%scheme, solids => self%solids, &
                n => self%system%matrix%num_free, old => before%motion, new => after%motion)
       call pose_task(self, model, when, before, after, task)
@@ -46,9 +48,14 @@ contains
                                   task%reference_force, roundoff_share*length(system%diagonal &
                                                                               *new%q), &
                                   largest_force(new, n, scheme%joint_weight, scheme%dt))
-        call task%check_balance(new%balanced(:n) - new%inertia(:n), after%largest_force, outcome)
+        residual = new%balanced(:n) - new%inertia(:n)
+        if (allocated(old%residual)) residual = residual + old%residual
+        call task%check_balance(residual, after%largest_force, outcome)
         if (.not. task%is_refined) exit
       end do
+      if (solids%has_inelastic() .or. solids%solver%controls%precision /= 'DOUBLE') then
+        new%residual = residual
+      end if
     end associate
   end subroutine take_increment
 
@@ -70,6 +77,7 @@ contains
       moved = moved - old%q
       call sum_known_forces(system, scheme, old, new%external, rhs)
       task%balance%rhs = rhs(:n)
+      if (allocated(old%residual)) task%balance%rhs = task%balance%rhs + old%residual
       call add_moving_supports(system, self%solids%values, moved, task%balance%rhs)
       if (has_moving_supports(system)) then
         call set_support_rates(model, system, scheme, when, old, moved, task)
@@ -91,17 +99,14 @@ contains
     end associate
   end subroutine pose_task
 
-  !> Newmark's displacements (7.1) of an increment at whose end the acceleration has changed as in
-  !> the increment before. Where it is smooth, it goes on; where it has changed its sign, it stops.
-  pure function predict(scheme, old, n) result(x)
+  !> Newmark's displacements (7.1) of an increment that ends with the expected acceleration.
+  function predict(scheme, old, n) result(x)
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: old
     integer, intent(in) :: n !< free unknowns
     real(rk) :: x(n) !< [m]
-    associate (ratio => min(1.0_rk, max(-1.0_rk, old%acceleration_ratio)))
-      x = scheme%dt*old%v(:n) &
-          + scheme%dt**2*(0.5_rk - scheme%beta*(1.0_rk - ratio))*old%a(:n)
-    end associate
+    x = scheme%dt*old%v(:n) + scheme%dt**2*((0.5_rk - scheme%beta)*old%a(:n) &
+                                            + scheme%beta*expected_acceleration(old, n))
   end function predict
 
   !> Rates of the supports at the end, and forces by what Newmark's formulas make of them beyond.
@@ -181,7 +186,7 @@ contains
                n => system%matrix%num_free)
       new%q = task%start + task%x
       call newmark_rates(scheme, old, new%q - old%q, new%v, new%a)
-      if (solids%has_inelastic()) new%acceleration_ratio = ratio_of(old%a(:n), new%a(:n))
+      if (solids%has_inelastic()) call find_trend(old, new, n)
       if (allocated(task%support_a)) new%a(n + 1:) = task%support_a(n + 1:)
       call multiply(system%mass_pattern, system%mass_entries, new%a, new%inertia)
       new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia
@@ -195,12 +200,6 @@ contains
     call carry_correction(scheme, before%motion, after%motion)
     call add_joints(system, scheme, before, after)
   end subroutine correct
-
-  !> The factor with which x comes nearest to y, by least squares.
-  pure real(rk) function ratio_of(x, y)
-    real(rk), intent(in) :: x(:), y(:) !< of one size
-    ratio_of = dot_product(x, y)/max(dot_product(x, x), tiny(1.0_rk))
-  end function ratio_of
 
   !> Velocities of supports, momentum and damping by what they are beyond the sum of accelerations.
   subroutine move_supports(system, scheme, v, old, new)

@@ -55,7 +55,10 @@ contains
     type(motion), intent(in) :: last !< at the end of the step before
     type(motion), intent(inout) :: own !< at the start of the step
     if (allocated(last%carried_correction)) own%carried_correction = last%carried_correction
+    if (allocated(last%residual)) own%residual = last%residual
+    if (allocated(last%last_a)) own%last_a = last%last_a
     own%acceleration_ratio = last%acceleration_ratio
+    own%last_ratio = last%last_ratio
   end subroutine keep_accelerations
 
   !> Forces that the inertia balances [N], joints by their laws.

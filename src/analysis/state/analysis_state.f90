@@ -122,8 +122,13 @@ module analysis_state
     !> end of the increment carries it [N]; of solids with a free energy in dynamic steps only
     real(rk), allocatable :: correction(:), carried_correction(:)
     real(rk), allocatable :: momentum(:), inertia(:) !< M v [N s], M a [N]
-    !> Least-squares factor from the acceleration before the last increment to that after it
-    real(rk) :: acceleration_ratio = 0.0_rk
+    !> (free unknowns) what the last increment has left of the balance of forces, which the next one
+    !> makes up for; where solutions are not exact [N]
+    real(rk), allocatable :: residual(:)
+    real(rk), allocatable :: last_a(:) !< (num_total) a before the last increment [m/s2]
+    !> a after the last increment is nearly that before it times the first factor, and that of one
+    !> increment earlier times the second one
+    real(rk) :: acceleration_ratio = 0.0_rk, last_ratio = 0.0_rk
     !> (num_total) first [m/s] and second [m/s2] divided difference of q over the last increments;
     !> with *CONTROLS, ACCURACY only
     real(rk), allocatable :: slope(:), bend(:)

@@ -107,6 +107,8 @@ contains
     last%viscous_rate = last%viscous_rate(place)
     last%momentum = last%momentum(place)
     last%inertia = last%inertia(place)
+    if (allocated(last%residual)) deallocate (last%residual) ! small; the free unknowns are others
+    if (allocated(last%last_a)) last%last_a = last%last_a(place)
     if (allocated(last%lost_damping)) last%lost_damping = last%lost_damping(place)
     if (allocated(last%carried_correction)) then
       last%carried_correction = last%carried_correction(place)

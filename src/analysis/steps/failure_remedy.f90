@@ -85,7 +85,7 @@ contains
     type(unmet_criterion) :: unmet
     type(step_controls) :: usual
     precision = ''
-    if (plan%controls%keeps_single) precision = 'name PRECISION=DOUBLE, or '
+    if (plan%controls%precision /= 'DOUBLE') precision = 'name PRECISION=DOUBLE, or '
     text = ''
     unmet = unmet_of(plan, outcome)
     if (unmet%name == of_jumps .or. unmet%name == of_solves .or. &

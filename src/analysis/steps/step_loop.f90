@@ -83,7 +83,7 @@ contains
     if (.not. all(choices%is_symmetric())) text = text//', unsymmetric tangents by MUMPS'
   end function method_of_step
 
-  !> Says what the solves of a step have taken, where the solver says it.
+  !> Says what the solves of a step have taken, and how they were done, where the solver says it.
   subroutine report_iterations(plan, method, results)
     type(step), intent(in) :: plan
     class(integrator), intent(in) :: method
@@ -92,6 +92,8 @@ contains
     if (.not. allocated(method%solids%solver)) return
     if (.not. allocated(method%solids%solver%factor)) return
     text = method%solids%solver%factor%describe_iterations()
+    if (text /= '') call results%log%say("step '"//plan%name//"': "//text)
+    text = method%solids%solver%repeated%describe()
     if (text /= '') call results%log%say("step '"//plan%name//"': "//text)
   end subroutine report_iterations
 

@@ -55,6 +55,7 @@ contains
     do i = 1, most_kept
       if (abs(self%items(i)%size - size) > same_size*size) cycle
       call move_alloc(self%items(i)%solver, solver)
+      call solver%repeated%leave()
       self%items(i)%size = 0.0_rk
       self%items(i)%last_use = 0
     end do

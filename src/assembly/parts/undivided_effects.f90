@@ -64,6 +64,8 @@ contains
     type(step), intent(in) :: plan
     character(:), allocatable :: effect
     effect = ''
-    if (plan%controls%keeps_single) effect = 'factors in single precision (PRECISION=SINGLE)'
+    if (plan%controls%precision /= 'DOUBLE') then
+      effect = 'factors in single precision (PRECISION='//trim(plan%controls%precision)//')'
+    end if
   end function effect_of_step
 end module undivided_effects

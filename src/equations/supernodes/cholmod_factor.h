@@ -23,6 +23,9 @@ struct keyway_cholmod {
   size_t num_single;
   double *rest;     /* the supernodes in double precision */
   long *part_start; /* of each supernode in `single`, or -1 - that in `rest` */
+  /* A copy of the whole factor in single precision; NULL: there is none. */
+  float *copy;
+  long *copy_start; /* of each supernode */
 };
 
 /* Frees the top. */
@@ -31,7 +34,10 @@ void keyway_free_top(struct keyway_cholmod *c);
 /* The supernodes of the factor, as it is held. */
 struct keyway_supernodes keyway_supernodes_of(const struct keyway_cholmod *c);
 
-/* Frees the factor that is held in single precision. */
+/* The supernodes of the copy in single precision. */
+struct keyway_supernodes keyway_supernodes_of_copy(const struct keyway_cholmod *c);
+
+/* Frees what is held in single precision. */
 void keyway_free_single(struct keyway_cholmod *c);
 
 #endif

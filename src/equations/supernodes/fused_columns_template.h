@@ -12,7 +12,7 @@ FOR_EACH_PROCESSOR
 void OF_PRECISION(keyway_forward)(int width, int length, const VALUE *value, double *t)
 {
   const size_t n = (size_t)length;
-  const int is_ahead = asks_ahead();
+  const int is_ahead = asks_ahead(sizeof *value);
   int j = 0;
   for (; j + 4 <= width; j += 4) {
     const VALUE *a = value + (size_t)j * n, *b = a + n, *c = b + n, *d = c + n;
@@ -46,7 +46,7 @@ FOR_EACH_PROCESSOR
 void OF_PRECISION(keyway_backward)(int width, int length, const VALUE *value, double *t)
 {
   const size_t n = (size_t)length;
-  const int is_ahead = asks_ahead();
+  const int is_ahead = asks_ahead(sizeof *value);
   int j = width;
   for (; j % 4 != 0; j--) {
     const VALUE *a = value + (size_t)(j - 1) * n;

@@ -1,5 +1,6 @@
-/* A factor of CHOLMOD with its lower part in single precision: half of the memory, and half of the
- * time of a substitution, which reads the factor and does little else. */
+/* A factor of CHOLMOD in single precision: a substitution, which reads the factor and does little
+ * else, takes half of the time. Either its lower part takes the place of the one in double precision,
+ * which needs half of the memory, or a copy of the whole factor stands beside it. */
 #include "cholmod_factor.h"
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,11 @@ void keyway_free_single(struct keyway_cholmod *c)
   cholmod_free(c->num_single, sizeof(float), c->single, &c->common);
   free(c->rest);
   free(c->part_start);
+  free(c->copy);
+  free(c->copy_start);
   c->single = NULL;
+  c->copy = NULL;
+  c->copy_start = NULL;
   c->rest = NULL;
   c->part_start = NULL;
 }
@@ -90,4 +95,36 @@ int keyway_cholmod_round(void *handle, int n, int count, const int *unknown)
   free(column);
   free(is_double);
   return status;
+}
+
+struct keyway_supernodes keyway_supernodes_of_copy(const struct keyway_cholmod *c)
+{
+  const cholmod_factor *l = c->factor;
+  struct keyway_supernodes view = {(int)l->nsuper, l->super, l->pi, l->px, l->s,
+                                   NULL, c->copy, c->copy_start};
+  return view;
+}
+
+/* Copies the factor. Returns 0 for success; without memory there is no copy. */
+int keyway_cholmod_copy(void *handle)
+{
+  struct keyway_cholmod *c = handle;
+  const cholmod_factor *l = c->factor;
+  const int *start = l->px;
+  const double *value = l->x;
+  free(c->copy);
+  free(c->copy_start);
+  c->copy = NULL;
+  c->copy_start = NULL;
+  if (!l->is_super || !value) return 1;
+  c->copy = malloc((l->xsize + 1) * sizeof *c->copy);
+  c->copy_start = malloc((l->nsuper + 1) * sizeof *c->copy_start);
+  if (!c->copy || !c->copy_start) {
+    keyway_free_single(c);
+    return 1;
+  }
+  for (size_t s = 0; s < l->nsuper; s++) c->copy_start[s] = start[s];
+#pragma omp parallel for
+  for (size_t k = 0; k < l->xsize; k++) c->copy[k] = (float)value[k];
+  return 0;
 }

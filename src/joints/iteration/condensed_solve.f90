@@ -243,7 +243,9 @@ contains
     call self%costs%start('solve forward', 'structure', 'solver')
     if (self%exact%is_rounded()) call subtract_base(self, half)
     if (self%repeated%is_there(self%factor)) then
-      if (.not. balance%is_repeated) call self%repeated%start(self%factor, half, error)
+      if (.not. balance%is_repeated) then
+        call self%repeated%start(self%factor, self%admissible, half, error)
+      end if
       if (.not. allocated(error)) call self%repeated%forward(self%factor, half, error)
     else
       call self%factor%forward_substitute(half, error)

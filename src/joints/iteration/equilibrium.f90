@@ -181,14 +181,19 @@ contains
     if (self%first_pass > 0) iterations = self%first_pass
   end function own_iterations
 
-  !> Keeps the factor in single precision where *CONTROLS asks for it, but for the part that holds
-  !> some unknowns.
+  !> Keeps a copy of the factor in single precision, or the factor itself but for the part that
+  !> holds some unknowns, as *CONTROLS asks.
   subroutine keep_single(self, matrix, values, unknown)
     class(equilibrium_solver), intent(inout) :: self
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< of the matrix that is factored
     integer, intent(in) :: unknown(:)
-    if (.not. self%controls%keeps_single) return
+    logical :: has_copy
+    has_copy = .false.
+    if (self%controls%precision == 'MIXED') call self%factor%copy_single(has_copy)
+    call self%repeated%open(self%factor, has_copy, &
+                            values(matrix%column_start(:matrix%num_free)))
+    if (self%controls%precision /= 'SINGLE') return
     call self%exact%round_factor(matrix, values, self%low_rank, unknown, self%factor)
   end subroutine keep_single
 

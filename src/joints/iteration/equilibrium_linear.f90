@@ -73,7 +73,9 @@ contains
     if (self%is_unsymmetric) then
       call self%unsymmetric_factor%solve(b, error)
     else if (self%repeated%is_there(self%factor)) then
-      if (.not. balance%is_repeated) call self%repeated%start(self%factor, balance%rhs, error)
+      if (.not. balance%is_repeated) then
+        call self%repeated%start(self%factor, self%admissible_residual(balance), balance%rhs, error)
+      end if
       if (.not. allocated(error)) call self%repeated%forward(self%factor, b(:, 1), error)
       if (.not. allocated(error)) then
         call self%repeated%backward(self%factor, b(:, 1), balance%is_partial, x(:size(b, 1)), error)

@@ -52,8 +52,11 @@ contains
                     choices=joint_solvers), &
               field('PRECISION', kind_choice, 'of the factor of the matrix that is kept: with '// &
                     'SINGLE it takes half the memory, and solves are refined in double '// &
-                    'precision until the residual is admissible; symmetric matrices only', &
-                    default='DOUBLE', choices='DOUBLE | SINGLE'), &
+                    'precision until the residual is admissible; with MIXED it takes half '// &
+                    'as much memory again, for a copy in single precision, which solves for '// &
+                    'what changes from increment to increment of *DYNAMIC while its errors '// &
+                    'are admissible; symmetric matrices only', &
+                    default='DOUBLE', choices='DOUBLE | SINGLE | MIXED'), &
               field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
                     'of the end of the step, as the bulk, or end of the step', &
                     default='IMPLICIT', choices='IMPLICIT | HHT | END'), &
@@ -83,7 +86,7 @@ contains
         controls%estimates_errors = this%word('ERROR ESTIMATE') == 'ON'
       end if
       if (this%has('JOINT SOLVER')) controls%joint_solver = this%word('JOINT SOLVER')
-      if (this%has('PRECISION')) controls%keeps_single = this%word('PRECISION') == 'SINGLE'
+      if (this%has('PRECISION')) controls%precision = this%word('PRECISION')
       if (this%has('JOINT FORCES')) controls%joint_forces = this%word('JOINT FORCES')
       if (this%has('TANGENT')) controls%tangent = this%word('TANGENT')
     end associate

@@ -67,7 +67,9 @@ module step_plan
     !> 0 where sizes do not follow it
     real(rk) :: accuracy = 0.0_rk
     logical :: estimates_errors = .true. !< ERROR ESTIMATE
-    logical :: keeps_single = .false. !< PRECISION=SINGLE: of the factor, outside of the joints
+    !> 'SINGLE': of the factor, outside of the joints; 'MIXED': the factor has a copy in single
+    !> precision; or 'DOUBLE'
+    character(6) :: precision = 'DOUBLE'
     character(16) :: joint_solver = 'AUTO' !< 'CONDENSED', 'FULL' or 'AUTO'
     !> Joint forces in time: 'IMPLICIT' (the impulse of a step is dt times the joint force at its
     !> end), 'HHT' (weighted like the bulk) or 'END'. Measured: docs/studies/joint_forces_in_time.

@@ -59,7 +59,7 @@ contains
     call repeated%choose(solver, active, 0.0_rk*rhs)
     call solver%factorise(matrix, values, error)
     call solver%solve(x(:, 1:1), error)
-    call repeated%start(solver, rhs, error)
+    call repeated%start(solver, 0.0_rk, rhs, error)
     do pass = 2, 3
       rhs(active) = rhs(active) + [(sin(real(pass*k, rk)), k=1, size(active))]
       half = rhs
