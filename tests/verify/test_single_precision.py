@@ -54,9 +54,9 @@ def test_jointed_dam(keyway, kind, residual, threads, apart):
         assert difference(double.csv(table), single.csv(table), columns) <= apart
 
 
-@pytest.mark.parametrize("kind", [SINGLE, MIXED])
-def test_dam_without_joints(keyway, kind):
-    """Increments that go on smoothly are exact to more digits than the residual asks for."""
+@pytest.mark.parametrize(("kind", "apart"), [(SINGLE, 1e-7), (MIXED, 1e-6)])
+def test_dam_without_joints(keyway, kind, apart):
+    """Increments that go on smoothly are exact with SINGLE to more digits than RESIDUAL asks for."""
     double, single = (
         run_trial(keyway, shaken(controls, num_joints=0), name=name)
         for controls, name in (("*CONTROLS, RESIDUAL=1e-6", "double"), (kind, "single"))
@@ -64,7 +64,7 @@ def test_dam_without_joints(keyway, kind):
     if kind == MIXED:
         assert solutions_in_single(single) > 0
     tables = [run.csv("node_CROWN_CREST") for run in (double, single)]
-    assert difference(*tables, ("U1", "U2", "U3")) <= 1e-7
+    assert difference(*tables, ("U1", "U2", "U3")) <= apart
 
 
 LENGTH = 10.0  # of the strip [m]
@@ -160,7 +160,7 @@ def test_cracking_monolith_in_small_increments(keyway):
     """
     source = ROOT / "input" / "cracking_monolith.inp"
     motion = source.with_name("cracking_monolith_motion.txt")
-    text = source.read_text().replace("0.01, 6.,", "0.001, 0.8,")
+    text = source.read_text().replace("0.01, 6.,", "0.002, 1.2,")
     double, mixed = (
         keyway(
             text.replace("*STATIC", f"{controls}\n*STATIC", 1),
