@@ -56,7 +56,7 @@ def test_jointed_dam(keyway, kind, residual, threads, apart):
 
 @pytest.mark.parametrize(("kind", "apart"), [(SINGLE, 1e-7), (MIXED, 1e-6)])
 def test_dam_without_joints(keyway, kind, apart):
-    """Increments that go on smoothly are exact with SINGLE to more digits than RESIDUAL asks for."""
+    """With SINGLE, smooth increments are exact to more digits than RESIDUAL asks for."""
     double, single = (
         run_trial(keyway, shaken(controls, num_joints=0), name=name)
         for controls, name in (("*CONTROLS, RESIDUAL=1e-6", "double"), (kind, "single"))
