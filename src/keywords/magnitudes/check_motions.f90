@@ -1,14 +1,13 @@
 !> Warns of base motions in another unit of acceleration or of time than the deck, and of those that
 !> begin with a jump.
 module check_motions
-  use amplitudes, only: amplitude, amplitude_at, one_g
-  use check_units, only: has_other_length, unit_of_length
+  use amplitudes, only: amplitude, amplitude_at
+  use deck_units, only: gravity_of, has_other_length, has_milliseconds
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use base_motion_cards, only: is_acceleration
   use load_cards, only: load_card_list, target_of_motion
-  use load_gravity, only: gravity_load
   use model_draft, only: draft
   use step_plan, only: span_of_step, step_load
   use write_text, only: as_short_text, as_text
@@ -108,8 +107,8 @@ contains
     real(rk) :: g, peak
     factor = 'a SCALE'
     if (is_acceleration(model%cards(place))) factor = 'a factor'
-    g = gravity_of(model)
-    if (has_other_length(model%problem%materials) .and. &
+    g = gravity_of(model%problem)
+    if ((has_other_length(model%problem) .or. has_milliseconds(model%problem)) .and. &
         (model%record_unit(work%amplitude) /= '' .or. &
          abs(model%record_factor(work%amplitude) - 1.0_rk) > 0.0_rk)) return ! check_units warns
     peak = abs(work%end_factor)*maxval(abs(record%value))
@@ -137,28 +136,9 @@ contains
     text = "the peak of the record '"//record%name//"', at "//as_text(record%time(i))//' s, '// &
            'does not act: the step ends at '//as_text(view%until)//' s, the record at '// &
            as_text(ends_at)//' s'
-    call model%cards(view%place)%warn(faults, text, 'a record and a step with times in s, and '// &
-                                      'a step that reaches the peak')
+    call model%cards(view%place)%warn(faults, text, 'a record and a step with times in one '// &
+                                      'unit, and a step that reaches the peak')
   end subroutine warn_of_end
-
-  !> Acceleration of gravity in the unit of the deck; 0 where neither the density nor a weight shows
-  !> it.
-  real(rk) function gravity_of(model) result(g)
-    type(draft), intent(in) :: model
-    integer :: s, i
-    g = one_g*unit_of_length(model%problem%materials)
-    if (g > 0.0_rk) return
-    do s = 1, size(model%problem%steps)
-      do i = 1, size(model%problem%steps(s)%loads)
-        associate (work => model%problem%steps(s)%loads(i))
-          select type (weight => model%problem%loads(work%load)%item)
-          type is (gravity_load)
-            g = max(g, abs(work%end_factor)*norm2(weight%acceleration))
-          end select
-        end associate
-      end do
-    end do
-  end function gravity_of
 
   !> The largest value of a history within a step and at its start and end, between two values.
   pure subroutine find_peak(record, span, peak, at)
