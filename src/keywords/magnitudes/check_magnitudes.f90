@@ -3,7 +3,7 @@
 module check_magnitudes
   use deck_card, only: card
   use deck_scan, only: is_keyword
-  use deck_units, only: unit_of_length, unit_of_time, weight_of
+  use deck_units, only: unit_of_length, unit_of_time
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use model_draft, only: draft
@@ -94,7 +94,7 @@ contains
     type(draft), intent(in) :: model
     associate (procedures => model%problem%steps%procedure)
       uses_density = any(procedures%has_inertia .or. procedures%finds_modes) &
-                     .or. weight_of(model%problem) > 0.0_rk
+                     .or. model%problem%gravity > 0.0_rk
     end associate
   end function uses_density
 

@@ -31,6 +31,12 @@ module check_motions
     real(rk) :: until = 0.0_rk !< end of the last step on the clock of the record [s]
   end type view_of_record
 
+  !> Accelerations of the deck.
+  type :: acceleration_unit
+    real(rk) :: g = 0.0_rk !< of the earth; 0: not known
+    logical :: is_other = .false. !< than m/s2
+  end type acceleration_unit
+
 contains
 
   !> The deck must have no errors. One warning of a kind for each record.
@@ -39,11 +45,14 @@ contains
     type(load_card_list), intent(in) :: cards !< of the deck
     type(diagnostic_list), intent(inout) :: faults
     type(view_of_record) :: views(size(model%problem%amplitudes))
+    type(acceleration_unit) :: unit
     integer :: s, i
+    unit%g = gravity_of(model%problem)
+    unit%is_other = has_other_length(model%problem) .or. has_milliseconds(model%problem)
     do s = 1, size(model%problem%steps)
       if (.not. model%problem%steps(s)%procedure%has_inertia) cycle
       do i = 1, size(model%problem%steps(s)%loads)
-        call look_at_load(model, cards, s, model%problem%steps(s)%loads(i), views, faults)
+        call look_at_load(model, cards, s, model%problem%steps(s)%loads(i), unit, views, faults)
       end do
     end do
     do i = 1, size(views)
@@ -52,11 +61,12 @@ contains
   end subroutine warn_of_motions
 
   !> A load of a step, if it is a base motion.
-  subroutine look_at_load(model, cards, s, work, views, faults)
+  subroutine look_at_load(model, cards, s, work, unit, views, faults)
     type(draft), intent(in) :: model
     type(load_card_list), intent(in) :: cards
     integer, intent(in) :: s !< step
     type(step_load), intent(in) :: work
+    type(acceleration_unit), intent(in) :: unit
     type(view_of_record), intent(inout) :: views(:) !< (amplitudes)
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: peak, at, span(2)
@@ -73,7 +83,7 @@ contains
                                 otherwise=0)
         if (view%place == 0) return
         call warn_of_start(model, view%place, s, record, faults)
-        call warn_of_peak(model, view%place, work, record, faults)
+        call warn_of_peak(model, view%place, work, unit, record, faults)
       end associate
     end select
   end subroutine look_at_load
@@ -97,27 +107,28 @@ contains
   end subroutine warn_of_start
 
   !> A peak that no earthquake has.
-  subroutine warn_of_peak(model, place, work, record, faults)
+  subroutine warn_of_peak(model, place, work, unit, record, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: place !< card
     type(step_load), intent(in) :: work
+    type(acceleration_unit), intent(in) :: unit
     type(amplitude), intent(in) :: record
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: factor
-    real(rk) :: g, peak
+    real(rk) :: peak
     factor = 'a SCALE'
     if (is_acceleration(model%cards(place))) factor = 'a factor'
-    g = gravity_of(model%problem)
-    if ((has_other_length(model%problem) .or. has_milliseconds(model%problem)) .and. &
+    if (unit%is_other .and. &
         (model%record_unit(work%amplitude) /= '' .or. &
          abs(model%record_factor(work%amplitude) - 1.0_rk) > 0.0_rk)) return ! check_units warns
     peak = abs(work%end_factor)*maxval(abs(record%value))
-    if (g <= 0.0_rk .or. peak <= 0.0_rk) return
-    if (peak >= least_peak*g .and. peak <= largest_peak*g) return
+    if (unit%g <= 0.0_rk .or. peak <= 0.0_rk) return
+    if (peak >= least_peak*unit%g .and. peak <= largest_peak*unit%g) return
     call model%cards(place)%warn(faults, "the peak of the motion '"//record%name//"' is "// &
-                                 as_short_text(peak)//', which is '//as_short_text(peak/g)// &
-                                 ' g with g = '//as_text(g), factor//' that turns the record '// &
-                                 'into the unit of acceleration of the deck')
+                                 as_short_text(peak)//', which is '// &
+                                 as_short_text(peak/unit%g)//' g with g = '//as_text(unit%g), &
+                                 factor//' that turns the record into the unit of '// &
+                                 'acceleration of the deck')
   end subroutine warn_of_peak
 
   !> A record whose largest values come after all steps.

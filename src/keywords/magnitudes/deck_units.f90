@@ -46,7 +46,7 @@ contains
     heaviest = maxval([0.0_rk, model%materials%density])
     stiffest = maxval([0.0_rk, model%materials%young])
     if (heaviest >= lightest_solid) then
-      if (has_milliseconds(model)) words = 'gravity of '//as_text(weight_of(model))
+      if (has_milliseconds(model)) words = 'gravity of '//as_text(model%gravity)
     else if (heaviest > 0.0_rk) then
       words = '*DENSITY of '//as_text(heaviest)
     else if (stiffest > 0.0_rk .and. stiffest < softest_solid) then
@@ -70,7 +70,7 @@ contains
     slowest = slowest_waves(model%materials)
     heaviest = maxval([0.0_rk, model%materials%density])
     if (has_milliseconds(model)) then
-      has_other_length = .not. is_g(thousand**2*weight_of(model))
+      has_other_length = .not. is_g(thousand**2*model%gravity)
     else if (slowest < huge(1.0_rk)) then
       has_other_length = slowest > fastest_solid
     else if (heaviest > 0.0_rk) then
@@ -94,7 +94,7 @@ contains
   pure logical function has_milliseconds(model)
     type(problem), intent(in) :: model
     real(rk) :: g, slowest
-    g = weight_of(model)
+    g = model%gravity
     slowest = slowest_waves(model%materials)
     if (slowest >= huge(1.0_rk)) slowest = 0.0_rk
     has_milliseconds = is_g(thousand**2*g) .and. slowest <= fastest_solid/thousand
@@ -131,7 +131,7 @@ contains
     integer :: s
     second = 1.0_rk
     if (has_milliseconds(model)) second = thousand
-    if (is_g(weight_of(model)) .or. is_g(weight_of(model)/thousand)) return
+    if (is_g(model%gravity) .or. is_g(model%gravity/thousand)) return
     if (second > 1.0_rk .or. .not. allocated(model%steps)) return
     do s = 1, size(model%steps)
       if (.not. model%steps(s)%procedure%has_inertia) cycle
@@ -147,7 +147,7 @@ contains
     metre = unit_of_length(model%materials)
     second = unit_of_time(model)
     if (metre <= 0.0_rk) then
-      g = weight_of(model)
+      g = model%gravity
     else if (second <= 0.0_rk) then
       g = 0.0_rk
     else
