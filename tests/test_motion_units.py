@@ -87,6 +87,65 @@ def test_a_deck_in_metres_and_other_forces(density, young, program_path, tmp_pat
     assert "not in SI" not in done.stderr
 
 
+MOTION = (
+    "*AMPLITUDE, NAME=QUAKE{unit}\n0., 0., {half!r}, {peak!r}, {end!r}, 0.\n*STEP\n"
+    "*DYNAMIC\n{increment!r}, {end!r}\n{weight}*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n"
+)
+
+
+def deck_in_ms(density: str, modulus: str, gravity: str, peak: float, unit: str = "") -> str:
+    """The block in a motion of 1000 ms with increments of 10 ms; gravity '' for no weight."""
+    weight = f"*DLOAD\nDAM, GRAV, {gravity}, 0., 0., -1.\n" if gravity else ""
+    times = {"increment": 10.0, "half": 500.0, "end": 1000.0}
+    motion = MOTION.format(unit=unit, peak=peak, weight=weight, **times)
+    deck = BASE.read_text(encoding="utf-8")
+    deck = deck.replace("*STEP\n*STATIC\n*DLOAD\nDAM, GRAV, 9.81, 0., 0., -1.\n", motion)
+    return deck.replace("2400.", density).replace("22e9", modulus)
+
+
+@pytest.mark.parametrize(
+    ("density", "modulus", "gravity", "peak"),
+    [
+        ("2400.", "22e3", "9.81e-6", "3e-6"),  # kg, m, ms
+        ("2400.", "22e3", "", "3e-6"),
+        ("2.4e-6", "22.", "9.81e-3", "0.003"),  # kg, mm, ms
+        ("2.4e-3", "22e3", "9.81e-3", "0.003"),  # g, mm, ms
+    ],
+)
+def test_a_deck_in_milliseconds(program_path, tmp_path, density, modulus, gravity, peak) -> None:
+    """No warning of waves of 3 m/s or of a peak of 1e-7 g, and no unit beside the peak."""
+    done = checked(program_path, tmp_path, deck_in_ms(density, modulus, gravity, float(peak)))
+    assert "warning" not in done.stderr
+    assert f", peak {peak} at t = 500" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("increment", "gravity"), [(0.01, ""), (0.01, "9.81"), (1.0, "9.81")], ids=str
+)
+def test_a_modulus_in_mpa_in_a_deck_in_seconds(program_path, tmp_path, increment, gravity) -> None:
+    """The same numbers are two systems of units where weights or increments show seconds."""
+    deck = deck_in_ms("2400.", "22e3", gravity, 3.0)
+    deck = deck.replace("10.0, 1000.0", f"{increment}, 1000.")
+    assert "give waves of 3.028 m/s" in checked(program_path, tmp_path, deck).stderr
+
+
+def test_records_in_si_in_a_deck_in_milliseconds(program_path, tmp_path) -> None:
+    """A record in g becomes m/s2, and a reservoir has 9.81 m/s2 by default; 1e-6 is for m/ms2."""
+    water = "*RESERVOIR, NAME=LAKE, SURFACE=UPSTREAM, LEVEL=1., BED=0.\n"
+    deck = deck_in_ms("2400.", "22e3", "9.81e-6", 0.3, ", UNIT=G")
+    deck = deck.replace("*BASE MOTION", water + "*BASE MOTION")
+    said = checked(program_path, tmp_path, deck).stderr
+    where = (
+        "in a deck with a gravity of 9.81e-6, which is not in SI (kg, m, ms: water 1000, g 9.81e-6)"
+    )
+    assert f"GRAVITY is 9.81 by default {where}" in said
+    assert f"is turned into m/s2 {where}; SCALE=1e-6 here turns it into m/ms2" in said
+    assert said.count("warning") == 2
+    right = deck.replace("AMPLITUDE=QUAKE\n*END", "AMPLITUDE=QUAKE, SCALE=1e-6\n*END")
+    right = right.replace("BED=0.", "BED=0., GRAVITY=9.81e-6")
+    assert "warning" not in checked(program_path, tmp_path, right).stderr
+
+
 @pytest.mark.parametrize(
     ("header", "amplitude", "motion", "expected"),
     [

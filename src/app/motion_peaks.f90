@@ -2,7 +2,7 @@
 module motion_peaks
   use amplitudes, only: one_g
   use check_motions, only: find_peak
-  use check_units, only: has_other_length
+  use deck_units, only: has_other_acceleration
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use problem_definition, only: problem
@@ -15,7 +15,7 @@ module motion_peaks
 contains
 
   !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion, without units where the deck is
-  !> not in metres; '' of other loads.
+  !> not in metres and seconds; '' of other loads.
   pure function peak_of_motion(model, number, work) result(text)
     type(problem), intent(in) :: model
     integer, intent(in) :: number !< of the step
@@ -37,14 +37,14 @@ contains
     end select
   end function peak_of_motion
 
-  !> '3.07 m/s2 = 0.313 g'; '3070' where the deck is not in metres.
+  !> '3.07 m/s2 = 0.313 g'; '3070' where the deck is not in metres and seconds.
   pure function in_units(model, acceleration) result(text)
     type(problem), intent(in) :: model
     real(rk), intent(in) :: acceleration !< [m/s2]
     character(:), allocatable :: text
     character(24) :: room
     text = as_text(acceleration)
-    if (has_other_length(model%materials)) return
+    if (has_other_acceleration(model)) return
     write (room, '(f0.4)') acceleration/one_g
     text = trim(room)
     if (text(1:1) == '.') text = '0'//text

@@ -17,6 +17,7 @@ module problem_definition
   use inelastic_blocks, only: inelastic_block
   use umat_loader, only: user_library
   use unknown_layout, only: choose_solver
+  use kinds, only: rk
   implicit none
   private
   public :: problem
@@ -43,6 +44,8 @@ module problem_definition
     type(load_slot), allocatable :: loads(:)
     type(initial_value), allocatable :: initial_values(:)
     type(step), allocatable :: steps(:)
+    !> Largest acceleration of the weights of all steps, 0 without weights [m/s2]
+    real(rk) :: gravity = 0.0_rk
     type(stages) :: stages !< elements that come and go, joints that are grouted
     type(heating) :: heat !< temperatures
     type(user_library), pointer :: umat => null() !< loaded library of the user, null for none

@@ -68,6 +68,7 @@ set(sources
   magnitudes/check_magnitudes.f90
   magnitudes/check_motions.f90
   magnitudes/check_units.f90
+  magnitudes/deck_units.f90
   materials/concrete_remarks.f90
   materials/concrete_request.f90
   materials/concrete_widths.f90

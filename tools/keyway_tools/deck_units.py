@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .si_results import SiResults, Units
 
-# The rules of src/keywords/magnitudes/check_units.f90 for decks that are not in SI.
+# The rules of src/keywords/magnitudes/deck_units.f90 for decks that are not in SI.
 LIGHTEST_SOLID = 100.0  # densities of solids in kg/m3 lie above
 SOFTEST_SOLID = 1.0e6  # Young's moduli in Pa lie above, in MPa below
 # Concrete in t, mm, s: 2.4e-9 t/mm3 and 3e4 MPa. In kg and mm, with E in kPa, it has 2.4e-6.

@@ -1,9 +1,9 @@
 !> Warns of numbers that no dam has, in a deck that is otherwise right: densities and moduli of two
 !> systems of units, an angle in place of a coefficient of friction.
 module check_magnitudes
-  use check_units, only: unit_of_length
   use deck_card, only: card
   use deck_scan, only: is_keyword
+  use deck_units, only: unit_of_length, unit_of_time
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use model_draft, only: draft
@@ -67,17 +67,18 @@ contains
   subroutine warn_of_speeds(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: speed(size(model%problem%materials)), metre
+    real(rk) :: speed(size(model%problem%materials)), metre, second
     logical :: has_waves(size(model%problem%materials))
     integer :: i
     metre = unit_of_length(model%problem%materials)
-    if (metre <= 0.0_rk) return
+    second = unit_of_time(model%problem)
+    if (metre <= 0.0_rk .or. second <= 0.0_rk .or. .not. uses_density(model)) return
     associate (list => model%problem%materials)
       has_waves = list%density > massless_share*maxval([0.0_rk, list%density]) &
                   .and. list%young > 0.0_rk
       if (.not. any(has_waves)) return
       speed = 0.0_rk
-      where (has_waves) speed = sqrt(list%young/list%density)/metre
+      where (has_waves) speed = second*sqrt(list%young/list%density)/metre
     end associate
     i = maxloc(speed, dim=1, mask=has_waves)
     if (speed(i) < merge(slowest_in_mm, slowest_in_si, metre > 1.0_rk)) then
@@ -87,6 +88,15 @@ contains
     if (metre <= 1.0_rk .or. speed(i) <= fastest_in_mm) return
     call warn_of_speed(model, i, speed(i), faults)
   end subroutine warn_of_speeds
+
+  !> Whether a motion, a frequency or a weight depends on the densities.
+  pure logical function uses_density(model)
+    type(draft), intent(in) :: model
+    associate (procedures => model%problem%steps%procedure)
+      uses_density = any(procedures%has_inertia .or. procedures%finds_modes) &
+                     .or. model%problem%gravity > 0.0_rk
+    end associate
+  end function uses_density
 
   subroutine warn_of_speed(model, i, speed, faults)
     type(draft), intent(in) :: model

@@ -1,14 +1,13 @@
 !> Warns of base motions in another unit of acceleration or of time than the deck, and of those that
 !> begin with a jump.
 module check_motions
-  use amplitudes, only: amplitude, amplitude_at, one_g
-  use check_units, only: has_other_length, unit_of_length
+  use amplitudes, only: amplitude, amplitude_at
+  use deck_units, only: gravity_of, has_other_length, has_milliseconds
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use base_motion_cards, only: is_acceleration
   use load_cards, only: load_card_list, target_of_motion
-  use load_gravity, only: gravity_load
   use model_draft, only: draft
   use step_plan, only: span_of_step, step_load
   use write_text, only: as_short_text, as_text
@@ -32,6 +31,12 @@ module check_motions
     real(rk) :: until = 0.0_rk !< end of the last step on the clock of the record [s]
   end type view_of_record
 
+  !> Accelerations of the deck.
+  type :: acceleration_unit
+    real(rk) :: g = 0.0_rk !< of the earth; 0: not known
+    logical :: is_other = .false. !< than m/s2
+  end type acceleration_unit
+
 contains
 
   !> The deck must have no errors. One warning of a kind for each record.
@@ -40,11 +45,14 @@ contains
     type(load_card_list), intent(in) :: cards !< of the deck
     type(diagnostic_list), intent(inout) :: faults
     type(view_of_record) :: views(size(model%problem%amplitudes))
+    type(acceleration_unit) :: unit
     integer :: s, i
+    unit%g = gravity_of(model%problem)
+    unit%is_other = has_other_length(model%problem) .or. has_milliseconds(model%problem)
     do s = 1, size(model%problem%steps)
       if (.not. model%problem%steps(s)%procedure%has_inertia) cycle
       do i = 1, size(model%problem%steps(s)%loads)
-        call look_at_load(model, cards, s, model%problem%steps(s)%loads(i), views, faults)
+        call look_at_load(model, cards, s, model%problem%steps(s)%loads(i), unit, views, faults)
       end do
     end do
     do i = 1, size(views)
@@ -53,11 +61,12 @@ contains
   end subroutine warn_of_motions
 
   !> A load of a step, if it is a base motion.
-  subroutine look_at_load(model, cards, s, work, views, faults)
+  subroutine look_at_load(model, cards, s, work, unit, views, faults)
     type(draft), intent(in) :: model
     type(load_card_list), intent(in) :: cards
     integer, intent(in) :: s !< step
     type(step_load), intent(in) :: work
+    type(acceleration_unit), intent(in) :: unit
     type(view_of_record), intent(inout) :: views(:) !< (amplitudes)
     type(diagnostic_list), intent(inout) :: faults
     real(rk) :: peak, at, span(2)
@@ -74,7 +83,7 @@ contains
                                 otherwise=0)
         if (view%place == 0) return
         call warn_of_start(model, view%place, s, record, faults)
-        call warn_of_peak(model, view%place, work, record, faults)
+        call warn_of_peak(model, view%place, work, unit, record, faults)
       end associate
     end select
   end subroutine look_at_load
@@ -98,27 +107,28 @@ contains
   end subroutine warn_of_start
 
   !> A peak that no earthquake has.
-  subroutine warn_of_peak(model, place, work, record, faults)
+  subroutine warn_of_peak(model, place, work, unit, record, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: place !< card
     type(step_load), intent(in) :: work
+    type(acceleration_unit), intent(in) :: unit
     type(amplitude), intent(in) :: record
     type(diagnostic_list), intent(inout) :: faults
     character(:), allocatable :: factor
-    real(rk) :: g, peak
+    real(rk) :: peak
     factor = 'a SCALE'
     if (is_acceleration(model%cards(place))) factor = 'a factor'
-    g = gravity_of(model)
-    if (has_other_length(model%problem%materials) .and. &
+    if (unit%is_other .and. &
         (model%record_unit(work%amplitude) /= '' .or. &
          abs(model%record_factor(work%amplitude) - 1.0_rk) > 0.0_rk)) return ! check_units warns
     peak = abs(work%end_factor)*maxval(abs(record%value))
-    if (g <= 0.0_rk .or. peak <= 0.0_rk) return
-    if (peak >= least_peak*g .and. peak <= largest_peak*g) return
+    if (unit%g <= 0.0_rk .or. peak <= 0.0_rk) return
+    if (peak >= least_peak*unit%g .and. peak <= largest_peak*unit%g) return
     call model%cards(place)%warn(faults, "the peak of the motion '"//record%name//"' is "// &
-                                 as_short_text(peak)//', which is '//as_short_text(peak/g)// &
-                                 ' g with g = '//as_text(g), factor//' that turns the record '// &
-                                 'into the unit of acceleration of the deck')
+                                 as_short_text(peak)//', which is '// &
+                                 as_short_text(peak/unit%g)//' g with g = '//as_text(unit%g), &
+                                 factor//' that turns the record into the unit of '// &
+                                 'acceleration of the deck')
   end subroutine warn_of_peak
 
   !> A record whose largest values come after all steps.
@@ -137,28 +147,9 @@ contains
     text = "the peak of the record '"//record%name//"', at "//as_text(record%time(i))//' s, '// &
            'does not act: the step ends at '//as_text(view%until)//' s, the record at '// &
            as_text(ends_at)//' s'
-    call model%cards(view%place)%warn(faults, text, 'a record and a step with times in s, and '// &
-                                      'a step that reaches the peak')
+    call model%cards(view%place)%warn(faults, text, 'a record and a step with times in one '// &
+                                      'unit, and a step that reaches the peak')
   end subroutine warn_of_end
-
-  !> Acceleration of gravity in the unit of the deck; 0 where neither the density nor a weight shows
-  !> it.
-  real(rk) function gravity_of(model) result(g)
-    type(draft), intent(in) :: model
-    integer :: s, i
-    g = one_g*unit_of_length(model%problem%materials)
-    if (g > 0.0_rk) return
-    do s = 1, size(model%problem%steps)
-      do i = 1, size(model%problem%steps(s)%loads)
-        associate (work => model%problem%steps(s)%loads(i))
-          select type (weight => model%problem%loads(work%load)%item)
-          type is (gravity_load)
-            g = max(g, abs(work%end_factor)*norm2(weight%acceleration))
-          end select
-        end associate
-      end do
-    end do
-  end function gravity_of
 
   !> The largest value of a history within a step and at its start and end, between two values.
   pure subroutine find_peak(record, span, peak, at)
