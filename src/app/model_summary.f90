@@ -1,6 +1,5 @@
 !> The summary of a model as text.
 module model_summary
-  use deck_units, only: sign_of_other_units
   use dam_mesh, only: fe_mesh, named_set
   use joint_points, only: dam_joint
   use kinds, only: rk
@@ -40,7 +39,7 @@ contains
   pure function units_of(model) result(text)
     type(problem), intent(in) :: model
     character(:), allocatable :: text
-    text = sign_of_other_units(model)
+    text = model%sign_of_units
     if (text /= '') text = nl//row('units', 'not SI (a '//text//'): the numbers below are '// &
                                    'in the units of your deck')
   end function units_of
@@ -51,7 +50,7 @@ contains
     character(*), intent(in) :: name !< with a blank before
     character(:), allocatable :: unit
     unit = name
-    if (sign_of_other_units(model) /= '') unit = ''
+    if (model%sign_of_units /= '') unit = ''
   end function unit
 
   !> A title and the rows below it; nothing where there are no rows.

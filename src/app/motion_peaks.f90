@@ -2,7 +2,6 @@
 module motion_peaks
   use amplitudes, only: one_g
   use check_motions, only: find_peak
-  use deck_units, only: has_other_acceleration
   use kinds, only: rk
   use load_base_motion, only: base_motion
   use problem_definition, only: problem
@@ -44,7 +43,7 @@ contains
     character(:), allocatable :: text
     character(24) :: room
     text = as_text(acceleration)
-    if (has_other_acceleration(model)) return
+    if (model%has_other_acceleration) return
     write (room, '(f0.4)') acceleration/one_g
     text = trim(room)
     if (text(1:1) == '.') text = '0'//text

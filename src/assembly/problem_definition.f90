@@ -46,6 +46,8 @@ module problem_definition
     type(step), allocatable :: steps(:)
     !> Largest acceleration of the weights of all steps, 0 without weights [m/s2]
     real(rk) :: gravity = 0.0_rk
+    character(:), allocatable :: sign_of_units !< that the deck is not in SI; '' for one in SI
+    logical :: has_other_acceleration = .false. !< its unit is, or may be, another one than m/s2
     type(stages) :: stages !< elements that come and go, joints that are grouted
     type(heating) :: heat !< temperatures
     type(user_library), pointer :: umat => null() !< loaded library of the user, null for none

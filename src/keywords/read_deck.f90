@@ -10,7 +10,7 @@ module read_deck
   use check_loads, only: warn_of_loads
   use check_light_solids, only: warn_of_light_solids
   use check_magnitudes, only: warn_of_magnitudes
-  use deck_units, only: weight_of
+  use deck_units, only: note_units
   use check_motions, only: warn_of_motions
   use check_growth, only: warn_of_growth
   use check_pressures, only: warn_of_pressures
@@ -104,7 +104,7 @@ contains
     if (.not. faults%has_errors()) call verify_names(model, faults)
     if (.not. faults%has_errors()) call verify_steps(model, faults)
     if (faults%has_errors()) return
-    model%problem%gravity = weight_of(model%problem)
+    call note_units(model%problem)
     call warn_of_mesh(model, faults)
     call warn_of_unused(model, faults)
     call list_load_cards(model%cards, cards)

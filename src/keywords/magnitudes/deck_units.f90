@@ -11,7 +11,7 @@ module deck_units
   implicit none
   private
   public :: sign_of_other_units, has_kilograms_per_m3, has_other_length, has_milliseconds
-  public :: has_other_acceleration, unit_of_length, unit_of_time, gravity_of, weight_of, is_g
+  public :: note_units, unit_of_length, unit_of_time, gravity_of, is_g
 
   !> Densities of solids in SI lie above: a tenth of that of water. Concrete has 2.4 in t/m3, 2.4e-3
   !> in kt/m3 (MN, m, s) and 2.4e-9 in t/mm3 [kg/m3].
@@ -36,6 +36,14 @@ module deck_units
   real(rk), parameter :: longest_increment = 0.2_rk
 
 contains
+
+  !> Notes the units once for the whole deck.
+  subroutine note_units(model)
+    type(problem), intent(inout) :: model
+    model%gravity = weight_of(model)
+    model%sign_of_units = sign_of_other_units(model)
+    model%has_other_acceleration = has_other_acceleration(model)
+  end subroutine note_units
 
   !> What shows that a deck is not in SI: '*DENSITY of 2.4e-9'; '' for a deck in SI.
   pure function sign_of_other_units(model) result(words)
