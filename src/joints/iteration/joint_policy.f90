@@ -139,6 +139,7 @@ contains
     kept_outcome = now%outcome
     if (allocated(process%x)) kept_x = process%x
     now%field%num_openings = 0
+    call process%find_closed(now%operator) ! Newton's iteration has not needed them
     call linearise_anew(process, now)
     call process%run_newton(now)
     if (.not. is_done(process, now)) then
