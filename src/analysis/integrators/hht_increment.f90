@@ -55,6 +55,8 @@ contains
       end do
       if (solids%has_inelastic() .or. solids%solver%controls%precision /= 'DOUBLE') then
         new%residual = residual
+      else if (allocated(new%residual)) then
+        deallocate (new%residual) ! of a step before
       end if
     end associate
   end subroutine take_increment
