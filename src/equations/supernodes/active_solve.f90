@@ -60,7 +60,8 @@ contains
     class(equation_solver), intent(in) :: factor
     logical, intent(in) :: has_copy !< in single precision, of the factor
     real(rk), intent(in) :: diagonal(:) !< (free unknowns) of the matrix
-    if (allocated(factor%order)) call self%known%open(has_copy, diagonal(factor%order))
+    call self%known%open(has_copy)
+    if (has_copy) self%known%diagonal = diagonal(factor%order)
   end subroutine open_repeated
 
   !> The next solution is far from the last one.

@@ -112,10 +112,7 @@ int keyway_cholmod_copy(void *handle)
   const cholmod_factor *l = c->factor;
   const int *start = l->px;
   const double *value = l->x;
-  free(c->copy);
-  free(c->copy_start);
-  c->copy = NULL;
-  c->copy_start = NULL;
+  keyway_free_single(c);
   if (!l->is_super || !value) return 1;
   c->copy = malloc((l->xsize + 1) * sizeof *c->copy);
   c->copy_start = malloc((l->nsuper + 1) * sizeof *c->copy_start);
