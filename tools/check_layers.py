@@ -65,6 +65,7 @@ ROOMS = (
     "analysis/reduced",
     "analysis/integrators",
     "analysis/steps",
+    "results/stresses",
     "results/quantities",
     "results/errors",
     "results/fields",

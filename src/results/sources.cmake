@@ -25,6 +25,15 @@ set(sources
   fields/stage_fields.f90
   fields/thermal_fields.f90
   input_files.f90
+  stresses/law_fields.f90
+  stresses/node_means.f90
+  stresses/principal_loops.f90
+  stresses/recovery_plans.f90
+  stresses/stress_error.f90
+  stresses/stress_fields.f90
+  stresses/stress_operator.f90
+  stresses/stress_recovery.f90
+  stresses/thermal_recovery.f90
   quantities/covered_faces.f90
   quantities/dam_faces.f90
   quantities/damage_readings.f90
@@ -33,13 +42,6 @@ set(sources
   quantities/extremes.f90
   quantities/joint_readings.f90
   quantities/joint_surface.f90
-  quantities/law_fields.f90
-  quantities/node_means.f90
-  quantities/stress_error.f90
-  quantities/stress_fields.f90
-  quantities/stress_operator.f90
-  quantities/stress_recovery.f90
-  quantities/thermal_recovery.f90
   record/record_archive.f90
   record/requested_fields.f90
   record/result_writer.f90

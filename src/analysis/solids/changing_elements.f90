@@ -2,6 +2,9 @@
 !> and their neighbours. All others stay elastic, which is checked before the increment is accepted.
 !> They have no initial-stress force, so that iterations need neither their laws nor their unknowns
 !> (theory.md, 12).
+!>
+!> The choice for the first update of an increment is that of its start; the choice for the
+!> iterations that follow includes what this update has changed.
 module changing_elements
   use inelastic_forces, only: block_answer
   use kinds, only: rk
@@ -36,8 +39,8 @@ contains
     end do
   end subroutine release_elements
 
-  !> Chooses from an update of all elements: those that are not elastic before or after it, and
-  !> those that share a node with them, where a crack may grow.
+  !> Chooses the elements that are not elastic at the start of the increment or after the last
+  !> update, and those that share a node with them, where a crack may grow.
   subroutine choose_elements(self, model, old, wants_all, answers)
     class(element_choice), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -85,9 +85,11 @@ contains
     now%guess = before%motion%elastic(:n) - before%motion%internal(:n) + product(:n)
     if (allocated(now%task%predicted) .and. any(abs(now%guess) > 0.0_rk)) then
       now%task%x(:n) = now%task%predicted
+      if (self%may_choose) call choose_from_answers(self, model, before)
       call evaluate(self, model, system, now%task, before, after)
       call self%matrix%multiply_lost(system%matrix, now%task%x, product)
       now%guess = self%excess(:n) - product(:n)
+      self%elements%is_made = .false. ! for the iterations: made from these answers
       call choose_elements(self, model, system, before, now)
     end if
     now%force = norm(now%rhs + self%weight*now%guess)
@@ -140,13 +142,21 @@ contains
     type(state), intent(inout) :: after
     type(iterate_state), intent(inout) :: now
     type(balance_outcome), intent(inout) :: outcome
-    real(rk) :: product(system%matrix%num_total)
     call evaluate(self, model, system, now%task, before, after)
     call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
     now%is_lost = allocated(outcome%failure)
+    call take_answer(self, system, now)
+  end subroutine find_answer
+
+  !> s' from the initial-stress force of the last evaluation.
+  subroutine take_answer(self, system, now)
+    class(solid_solver), intent(in) :: self
+    type(dam_system), intent(in) :: system
+    type(iterate_state), intent(inout) :: now
+    real(rk) :: product(system%matrix%num_total)
     call self%matrix%multiply_lost(system%matrix, now%task%x, product)
     now%answer = self%excess(:size(now%guess)) - product(:size(now%guess))
-  end subroutine find_answer
+  end subroutine take_answer
 
   !> Chooses the elements and unknowns that the next iterations change: after the first update of
   !> all elements, and when further elements are no longer elastic. A matrix of lost stiffness may
@@ -158,10 +168,7 @@ contains
     type(state), intent(in) :: before
     type(iterate_state), intent(inout) :: now
     if (.not. self%may_choose .or. (self%elements%is_made .and. .not. now%has_further)) return
-    if (.not. self%elements%is_made) then
-      call self%elements%choose(model, before%points, &
-                                wants_all=.not. self%matrix%is_elastic, answers=self%answers)
-    end if
+    if (.not. self%elements%is_made) call choose_from_answers(self, model, before)
     call self%mixer%forget()
     self%mixer%rows = find_active(model, system%numbers, self%elements%takes_part)
     now%has_further = .false.
@@ -173,8 +180,18 @@ contains
     end associate
   end subroutine choose_elements
 
+  !> Chooses the elements that take part from the last update.
+  subroutine choose_from_answers(self, model, before)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: before
+    call self%elements%choose(model, before%points, wants_all=.not. self%matrix%is_elastic, &
+                              answers=self%answers)
+  end subroutine choose_from_answers
+
   !> Updates the elements that have not taken part, at the complete solution. Where one is no longer
-  !> elastic it takes part from now on, and the iterate is measured again.
+  !> elastic it takes part from now on, and the iterate is measured again. Else the forces are those
+  !> of the last evaluation: elastic elements add none.
   subroutine check_others(self, model, system, before, after, now, outcome, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -188,15 +205,35 @@ contains
     call self%solver%complete_solution(now%task%x, error)
     if (allocated(error)) return
     call self%elements%ask_others(self%answers)
-    call find_answer(self, model, system, before, after, now, outcome)
+    call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
+    call update_laws(self, model, system, now%task, before, after)
+    call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
+    now%is_lost = allocated(outcome%failure)
     call self%elements%extend(model, self%answers, now%has_further)
+    if (now%has_further) call sum_forces(self, model, system, now%task, before, after)
+    call self%solver%costs%stop()
     if (.not. now%has_further .or. now%is_lost) return
+    call take_answer(self, system, now)
     call measure_iterate(self, system, before, now, outcome)
     now%first = size(outcome%history) + 1
   end subroutine check_others
 
-  !> Evaluates the laws at `task%start + task%x`.
+  !> Evaluates the laws at `task%start + task%x`, and their forces.
   subroutine evaluate(self, model, system, task, before, after)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(increment_task), intent(in) :: task
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
+    call update_laws(self, model, system, task, before, after)
+    call sum_forces(self, model, system, task, before, after)
+    call self%solver%costs%stop()
+  end subroutine evaluate
+
+  !> Updates the points of the elements that take part, and other guests with a history.
+  subroutine update_laws(self, model, system, task, before, after)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -205,16 +242,24 @@ contains
     type(state), intent(inout) :: after
     real(rk) :: u(3, model%mesh%num_nodes)
     call system%numbers%expand(task%start + task%x, u)
-    call self%solver%costs%start('update', 'inelastic solids', 'inelastic')
     call update_points(model, u, before%origin, self%time, before%points, after%points, &
                        self%answers)
     call update_guests(model, u, self%time%size, before%guests, after%guests, self%guest_excess)
+  end subroutine update_laws
+
+  !> The initial-stress force of the last updates.
+  subroutine sum_forces(self, model, system, task, before, after)
+    class(solid_solver), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(increment_task), intent(in) :: task
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
     call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
     call self%correction%add_force(model, system%numbers, self%time, before%points, after%points, &
                                    self%answers, self%excess)
     call self%loss%add_force(model, system%numbers, task, before%points, self%answers, self%excess)
-    call self%solver%costs%stop()
-  end subroutine evaluate
+  end subroutine sum_forces
 
   !> Residual, and an estimate of the next correction from the last one.
   subroutine measure_iterate(self, system, before, now, outcome)

@@ -8,6 +8,9 @@ module guest_histories
   private
   public :: history_reference, list_histories, start_histories, sum_work
 
+  !> Fewer histories are faster on one thread.
+  integer, parameter :: fewest_for_threads = 100
+
   !> A history, and the guest that it belongs to.
   type :: history_reference
     class(history), pointer :: own => null()
@@ -65,10 +68,22 @@ contains
     type(state), intent(in), target :: now
     type(stored_work), intent(out) :: total
     type(history_reference), allocatable :: list(:)
+    type(stored_work), allocatable :: part(:)
     integer :: i
     call list_histories(now, list, model)
+    allocate (part(size(list)))
+    !$omp parallel do default(none) shared(list, part) schedule(dynamic, 8) &
+    !$omp if (size(list) > fewest_for_threads)
     do i = 1, size(list)
-      if (associated(list(i)%own)) call list(i)%owner%add_work(list(i)%own, total)
+      if (associated(list(i)%own)) call list(i)%owner%add_work(list(i)%own, part(i))
+    end do
+    !$omp end parallel do
+    ! In the order of the list: the same sum for any number of threads.
+    do i = 1, size(list)
+      total%stored = total%stored + part(i)%stored
+      total%friction = total%friction + part(i)%friction
+      total%fracture = total%fracture + part(i)%fracture
+      total%crushing = total%crushing + part(i)%crushing
     end do
   end subroutine sum_work
 end module guest_histories

@@ -3,6 +3,7 @@
 #define NAME_OF(name, part) JOIN(name, part)
 #define ADD_COLUMN NAME_OF(MULTIPLY, _column)
 #define ADD_NODE NAME_OF(MULTIPLY, _node)
+#define ADD_COLUMNS NAME_OF(MULTIPLY, _columns)
 
 /* One column and its mirror image. */
 static inline __attribute__((always_inline)) void
@@ -54,17 +55,15 @@ ADD_NODE(const int *start, const int *row, const double *value, const ENTRIES *x
   y[j + 2] += third;
 }
 
-/* y = A x; alike[j] is the number of columns from j on with the same rows below them. */
+/* Columns `first` to `last` - 1, and their mirror images, which change no row above `first`. */
 FOR_EACH_PROCESSOR
-void MULTIPLY(int unknowns, int entries, const int *start, const int *alike, const int *row,
-              const double *value, const double *x, double *y)
+void ADD_COLUMNS(int first, int last, const int *start, const int *alike, const int *row,
+                 const double *value, const double *x, double *y)
 {
   const ENTRIES *from = (const ENTRIES *)x;
   ENTRIES *to = (ENTRIES *)y;
-  (void)entries;
-  for (int j = 0; j < unknowns; j++) to[j] = (ENTRIES){0.0};
-  for (int j = 0; j < unknowns;) {
-    if (TAKES_NODES && alike[j] >= 3) {
+  for (int j = first; j < last;) {
+    if (TAKES_NODES && alike[j] >= 3 && j + 3 <= last) {
       ADD_NODE(start + j, row, value, from, to, j);
       j += 3;
     } else {
@@ -74,7 +73,30 @@ void MULTIPLY(int unknowns, int entries, const int *start, const int *alike, con
   }
 }
 
+/* y = A x; alike[j] is the number of columns from j on with the same rows below them. Large
+ * matrices are taken in two parts, by one or two threads with the same result. */
+void MULTIPLY(int unknowns, int entries, const int *start, const int *alike, const int *row,
+              const double *value, const double *x, double *y)
+{
+  const int middle = first_of_second_part(unknowns, entries, start);
+  const size_t below = (size_t)(unknowns - middle);
+  ENTRIES *to = (ENTRIES *)y, *second = below ? calloc(below, sizeof *second) : NULL;
+  const int num_parts = second ? 2 : 1;
+#pragma omp parallel for schedule(static) num_threads(2) if (num_parts == 2)
+  for (int part = 0; part < num_parts; part++) {
+    if (part == 0) {
+      memset(y, 0, (size_t)unknowns * sizeof *to);
+      ADD_COLUMNS(0, second ? middle : unknowns, start, alike, row, value, x, y);
+    } else {
+      ADD_COLUMNS(middle, unknowns, start, alike, row, value, x, (double *)(second - middle));
+    }
+  }
+  for (size_t i = 0; second && i < below; i++) to[(size_t)middle + i] += second[i];
+  free(second);
+}
+
 #undef JOIN
 #undef NAME_OF
 #undef ADD_COLUMN
 #undef ADD_NODE
+#undef ADD_COLUMNS

@@ -10,7 +10,7 @@ module dual_weighting
   use fitted_stress, only: fit_stress, make_patch_fit, patch_fit
   use stress_error, only: average_patches, defect_of_solid, energy_of_stresses, hides_error, &
                           smoothing_plan
-  use stress_recovery, only: recovery_plan, max_points, fewest_for_threads
+  use recovery_plans, only: fewest_for_threads, max_points, recovery_plan
   use tensor6, only: sum_tensors
   implicit none
   private

@@ -6,7 +6,7 @@ module fitted_stress
   use shape_hex8, only: point_shape
   use small_matrix, only: solve_dense
   use stress_error, only: smoothing_plan
-  use stress_recovery, only: recovery_plan, max_points
+  use recovery_plans, only: max_points, recovery_plan
   implicit none
   private
   public :: patch_fit, make_patch_fit, fit_stress

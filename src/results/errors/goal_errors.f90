@@ -8,7 +8,7 @@ module goal_errors
   use problem_definition, only: problem
   use run_ledger, only: ledger
   use stress_fields, only: recovered_fields
-  use stress_recovery, only: recovery_plan
+  use recovery_plans, only: recovery_plan
   implicit none
   private
   public :: goal_error, note_motion_errors, note_duals, find_stiffening

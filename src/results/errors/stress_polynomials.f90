@@ -6,7 +6,7 @@ module stress_polynomials
   use shape_hex8, only: point_shape
   use small_matrix, only: solve_dense
   use stress_fields, only: recovered_fields
-  use stress_recovery, only: max_points
+  use recovery_plans, only: max_points
   implicit none
   private
   public :: stress_polynomial, linear_terms, quadratic_terms

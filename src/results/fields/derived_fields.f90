@@ -9,7 +9,7 @@ module derived_fields
   use node_means, only: average_at_nodes
   use problem_definition, only: problem
   use stress_fields, only: recovered_fields
-  use stress_recovery, only: recovery_plan
+  use recovery_plans, only: recovery_plan
   use tensor6, only: trace, von_mises
   implicit none
   private

@@ -4,7 +4,8 @@ module solid_fields
   use problem_definition, only: problem
   use analysis_state, only: state
   use law_fields, only: field_at_points, field_of_block, width_of_field
-  use stress_fields, only: principals, recovered_fields
+  use principal_loops, only: principals
+  use stress_fields, only: recovered_fields
   use tensor6, only: principal_values
   use field_type, only: result_field
   use thermal_recovery, only: add_expansion, has_expansion

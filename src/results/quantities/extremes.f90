@@ -4,6 +4,7 @@ module extremes
   implicit none
   private
   public :: extreme, extremes_by_face, face_names, forget_faces, note_histories, note_values
+  public :: may_exceed
 
   !> The order of `extremes_by_face%at`.
   character(10), parameter :: face_names(3) = ['anywhere  ', 'upstream  ', 'downstream']
@@ -22,6 +23,20 @@ module extremes
   end type extremes_by_face
 
 contains
+
+  !> Whether values can be beyond an extreme anywhere or on a face; false for most increments.
+  pure logical function may_exceed(record, values, wants_smallest)
+    type(extremes_by_face), intent(in) :: record
+    real(rk), intent(in) :: values(:)
+    logical, intent(in) :: wants_smallest
+    may_exceed = .true.
+    if (.not. all(record%at%is_found)) return
+    if (wants_smallest) then
+      may_exceed = any(values < maxval(record%at%value))
+    else
+      may_exceed = any(values > minval(record%at%value))
+    end if
+  end function may_exceed
 
   !> Includes the values at one time. Equal values keep the earlier time and place.
   subroutine note_values(record, values, x, is_upstream, is_downstream, time, wants_smallest)

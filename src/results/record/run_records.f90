@@ -8,7 +8,7 @@ module run_records
   use dam_faces, only: dam_skin, find_dam_faces
   use dam_mesh, only: element_is_there
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
-  use extremes, only: extreme, extremes_by_face, note_values
+  use extremes, only: extreme, extremes_by_face, may_exceed, note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements, take_block
@@ -25,6 +25,9 @@ module run_records
   implicit none
   private
   public :: run_record, text_item
+
+  !> Blocks from which several threads read their fields.
+  integer, parameter :: fewest_blocks = 100
 
   !> One text of a list.
   type :: text_item
@@ -185,9 +188,10 @@ contains
     integer, allocatable :: solid_nodes(:)
     type(extreme) :: before
     integer :: n
-    call self%list_solid_nodes(model, solid_nodes)
     call note_envelope(item, values, now%total_time)
     before = item%largest%at(1)
+    call self%list_solid_nodes(model, solid_nodes)
+    if (.not. may_exceed(item%largest, values(solid_nodes), item%wants_smallest)) return
     call note_values(item%largest, values(solid_nodes), model%mesh%x(:, solid_nodes), &
                      self%skin%is_upstream(solid_nodes), self%skin%is_downstream(solid_nodes), &
                      now%total_time, item%wants_smallest)
@@ -254,31 +258,52 @@ contains
     real(rk), intent(in) :: on_nodes(:) !< (nodes)
     type(envelope), intent(inout) :: item
     real(rk), allocatable :: values(:, :), mean(:)
+    logical :: may_grow(size(model%inelastic))
     integer :: i
     call note_envelope(item, on_nodes, now%total_time)
     if (self%fields(item%row)%has_means) then
       call mean_of_elements(model, now, item%name, mean)
       call note_means(item, mean)
     end if
-    do i = 1, size(model%inelastic)
+    !$omp parallel do default(none) shared(self, model, now, item, may_grow) private(values) &
+    !$omp schedule(dynamic, 8) if (size(may_grow) > fewest_blocks)
+    do i = 1, size(may_grow)
       ! The elements of a block come and go together.
-      if (.not. element_is_there(model%mesh, model%inelastic(i)%elements(1))) cycle
+      may_grow(i) = element_is_there(model%mesh, model%inelastic(i)%elements(1))
+      if (.not. may_grow(i)) cycle
+      call find_at_points(self, model, now, item, i, values)
+      may_grow(i) = may_exceed(item%largest, values(1, :), item%wants_smallest)
+    end do
+    !$omp end parallel do
+    do i = 1, size(may_grow)
+      if (.not. may_grow(i)) cycle
+      call find_at_points(self, model, now, item, i, values)
       associate (points => model%inelastic(i)%points, faces => self%damage%faces(i))
-        select case (item%name)
-        case ('S1_POINT', 'S3_POINT') ! the values on the nodes come from those at the points
-          associate (principal => self%stresses%point_principal(merge(3, 1, item%wants_smallest), &
-                                                                :, :))
-            call take_block(model, self%stresses%plan, i, principal, values)
-          end associate
-        case default
-          call self%fields(item%row)%of_block(model, now, i, values)
-        end select
-        if (.not. allocated(values)) allocate (values(1, points%num_points), source=0.0_rk)
         call note_values(item%largest, values(1, :), points%x, faces%is_upstream, &
                          faces%is_downstream, now%total_time, item%wants_smallest)
       end associate
     end do
   end subroutine note_points
+
+  !> A field at the points of an inelastic block.
+  subroutine find_at_points(self, model, now, item, block, values)
+    class(run_record), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    type(envelope), intent(in) :: item !< of the field
+    integer, intent(in) :: block !< its position
+    real(rk), allocatable, intent(out) :: values(:, :) !< (1, points)
+    select case (item%name)
+    case ('S1_POINT', 'S3_POINT') ! the values on the nodes come from those at the points
+      call take_block(model, self%stresses%plan, block, &
+                      self%stresses%point_principal(merge(3, 1, item%wants_smallest), :, :), &
+                      values)
+    case default
+      call self%fields(item%row)%of_block(model, now, block, values)
+      if (allocated(values)) return
+      allocate (values(1, model%inelastic(block)%points%num_points), source=0.0_rk)
+    end select
+  end subroutine find_at_points
 
   !> Whether an envelope of the present step needs the motion of the nodes.
   pure logical function has_envelope_of_nodes(self)

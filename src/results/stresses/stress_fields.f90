@@ -3,11 +3,10 @@ module stress_fields
   use kinds, only: rk
   use problem_definition, only: problem
   use analysis_state, only: state
-  use processor_features, only: has_wide_registers
-  use tensor6, only: find_principal_values
-  use tensor6_wide, only: find_wide => find_principal_values
-  use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, recover_some, &
-                             copy_states, max_points, fewest_for_threads, recover_expansions
+  use principal_loops, only: fill_principals, principals
+  use recovery_plans, only: fewest_for_threads, make_recovery_plan, max_points, recovery_plan
+  use stress_recovery, only: copy_states, recover_expansions, recover_points, recover_principals, &
+                             recover_some
   use node_means, only: average_at_nodes, average_at
   use law_fields, only: field_at_points, find_inelastic_solids, nodes_of_solids, &
                         is_zero_while_elastic
@@ -16,7 +15,7 @@ module stress_fields
                           energy_of_stresses, repeat_single_points, add_hourglass_energy
   implicit none
   private
-  public :: recovered_fields, principals
+  public :: recovered_fields
 
   integer, parameter :: recoveries_before_operator = 3
 
@@ -231,22 +230,25 @@ contains
   subroutine correct_inelastic(self, now)
     class(recovered_fields), intent(inout) :: self
     type(state), intent(in) :: now
-    logical, allocatable :: is_copied(:)
+    logical, allocatable :: is_wanted(:)
     integer :: k, i, s
     if (size(self%inelastic_nodes) == 0) return
     call open_points(self%plan%num_solids, self%point_stress)
     self%uses_points = .true.
-    allocate (is_copied(self%plan%num_solids), source=.false.)
+    allocate (is_wanted(self%plan%num_solids), source=.false.)
     do k = 1, size(self%inelastic_nodes)
       associate (start => self%plan%node_start, node => self%inelastic_nodes(k))
         do i = start(node), start(node + 1) - 1
-          s = (self%plan%corner(i) - 1)/8 + 1
-          if (is_copied(s)) cycle
-          call copy_states(self%plan, now, [s], stress=self%point_stress)
-          is_copied(s) = .true.
+          is_wanted((self%plan%corner(i) - 1)/8 + 1) = .true.
         end do
       end associate
     end do
+    !$omp parallel do default(none) shared(self, now, is_wanted) schedule(static) &
+    !$omp if (self%plan%num_solids > fewest_for_threads)
+    do s = 1, self%plan%num_solids
+      if (is_wanted(s)) call copy_states(self%plan, now, [s], stress=self%point_stress)
+    end do
+    !$omp end parallel do
     call average_at(self%plan, self%point_stress, self%is_inelastic, self%inelastic_nodes, &
                     self%node_stress)
   end subroutine correct_inelastic
@@ -322,17 +324,24 @@ contains
     self%has_principals = .true.
   end subroutine need_principals
 
-  !> Computes the principal stresses at the points, once an increment.
+  !> Computes the principal stresses at the points, once an increment; zero at points that an
+  !> element does not have.
   subroutine need_point_principals(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     if (self%has_point_principals) return
-    call self%need_points(model, now)
+    call self%need_inelastic(model, now)
+    self%uses_points = .true.
     if (.not. allocated(self%point_principal)) then
-      allocate (self%point_principal(3, max_points, self%plan%num_solids))
+      allocate (self%point_principal(3, max_points, self%plan%num_solids), source=0.0_rk)
     end if
-    call fill_principals(max_points*self%plan%num_solids, self%point_stress, self%point_principal)
+    if (self%has_points) then
+      call fill_principals(max_points*self%plan%num_solids, self%point_stress, &
+                           self%point_principal)
+    else
+      call recover_principals(model, self%plan, now, self%point_principal)
+    end if
     self%has_point_principals = .true.
   end subroutine need_point_principals
 
@@ -367,32 +376,4 @@ contains
                             self%stress_energy)
     self%has_error = .true.
   end subroutine need_error
-
-  !> Principal values of many tensors.
-  function principals(tensor) result(values)
-    real(rk), intent(in), contiguous :: tensor(:, :) !< (6, n)
-    real(rk) :: values(3, size(tensor, 2))
-    call fill_principals(size(tensor, 2), tensor, values)
-  end function principals
-
-  !> The same, in the copy of the loop for this processor (cmake/WideCopies.cmake).
-  subroutine fill_principals(num_tensors, tensors, values)
-    integer, intent(in) :: num_tensors
-    real(rk), intent(in) :: tensors(6, num_tensors)
-    real(rk), intent(out) :: values(3, num_tensors)
-    integer, parameter :: part = 512 !< that one thread takes
-    integer :: first, n
-    !$omp parallel do default(none) shared(num_tensors, tensors, values) private(n) &
-    !$omp schedule(static) if (num_tensors > fewest_for_threads)
-    do first = 1, num_tensors, part
-      n = min(part, num_tensors - first + 1)
-      if (has_wide_registers()) then
-        call find_wide(n, tensors(:, first:first + n - 1), values(:, first:first + n - 1))
-      else
-        call find_principal_values(n, tensors(:, first:first + n - 1), &
-                                   values(:, first:first + n - 1))
-      end if
-    end do
-    !$omp end parallel do
-  end subroutine fill_principals
 end module stress_fields

@@ -13,7 +13,8 @@ module stress_error
   use shape_hex8, only: corners_from_points, corner_of_point, hex8_dofs, point_shape
   use small_matrix, only: solve_dense
   use analysis_state, only: state
-  use stress_recovery, only: recovery_plan, motion_of_element, max_points, fewest_for_threads
+  use recovery_plans, only: fewest_for_threads, max_points, recovery_plan
+  use stress_recovery, only: motion_of_element
   use tensor6, only: sum_tensors
   use thermal_expansion, only: expands_alike
   implicit none

@@ -7,7 +7,7 @@
 module node_means
   use kinds, only: rk
   use shape_hex8, only: corners_from_points, corner_of_point
-  use stress_recovery, only: recovery_plan, max_points, fewest_for_threads
+  use recovery_plans, only: fewest_for_threads, max_points, recovery_plan
   implicit none
   private
   public :: average_at_nodes, average_at

@@ -6,7 +6,7 @@ module law_fields
   use material_points, only: point_state
   use problem_definition, only: problem
   use analysis_state, only: state
-  use stress_recovery, only: recovery_plan, max_points
+  use recovery_plans, only: fewest_for_threads, max_points, recovery_plan
   implicit none
   private
   public :: width_of_field, field_of_block, field_at_points, take_block, mean_of_elements
@@ -81,19 +81,34 @@ contains
     type(state), intent(in) :: now
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: values(:, :, :) !< (components, max_points, solids)
-    real(rk), allocatable :: of_block(:, :)
-    integer :: i, e, s, n
+    integer :: i
     allocate (values(width_of_field(model, name), max_points, plan%num_solids), source=0.0_rk)
+    !$omp parallel do default(none) shared(model, plan, now, name, values) schedule(dynamic, 8) &
+    !$omp if (plan%num_solids > fewest_for_threads)
     do i = 1, size(model%inelastic)
-      call field_of_block(model, now, i, name, of_block)
-      if (.not. allocated(of_block)) cycle
-      n = model%inelastic(i)%points_of_element
-      do e = 1, size(model%inelastic(i)%elements)
-        s = plan%solid_of_element(model%inelastic(i)%elements(e))
-        values(:size(of_block, 1), :n, s) = of_block(:, (e - 1)*n + 1:e*n)
-      end do
+      call spread_block(model, plan, now, i, name, values)
     end do
+    !$omp end parallel do
   end subroutine field_at_points
+
+  !> Writes a field of one block at its solids; zero fields are left out.
+  subroutine spread_block(model, plan, now, block, name, values)
+    type(problem), intent(in) :: model
+    type(recovery_plan), intent(in) :: plan
+    type(state), intent(in) :: now
+    integer, intent(in) :: block !< position in the problem's list
+    character(*), intent(in) :: name
+    real(rk), intent(inout) :: values(:, :, :) !< (components, max_points, solids)
+    real(rk), allocatable :: of_block(:, :)
+    integer :: e, s, n
+    call field_of_block(model, now, block, name, of_block)
+    if (.not. allocated(of_block)) return
+    n = model%inelastic(block)%points_of_element
+    do e = 1, size(model%inelastic(block)%elements)
+      s = plan%solid_of_element(model%inelastic(block)%elements(e))
+      values(:size(of_block, 1), :n, s) = of_block(:, (e - 1)*n + 1:e*n)
+    end do
+  end subroutine spread_block
 
   !> A component of values at the points of all solids, at the points of an inelastic block.
   pure subroutine take_block(model, plan, block, at_points, values)
@@ -118,21 +133,35 @@ contains
     type(state), intent(in) :: now
     character(*), intent(in) :: name
     real(rk), allocatable, intent(out) :: mean(:) !< (elements of the mesh)
-    real(rk), allocatable :: values(:, :)
-    integer :: i, e, n
+    integer :: i
     allocate (mean(model%mesh%num_elements), source=0.0_rk)
+    !$omp parallel do default(none) shared(model, now, name, mean) schedule(dynamic, 8) &
+    !$omp if (model%mesh%num_elements > fewest_for_threads)
     do i = 1, size(model%inelastic)
-      call field_of_block(model, now, i, name, values)
-      if (.not. allocated(values)) cycle
-      n = model%inelastic(i)%points_of_element
-      do e = 1, size(model%inelastic(i)%elements)
-        associate (weight => model%inelastic(i)%weight(:, e))
-          mean(model%inelastic(i)%elements(e)) = &
-            sum(weight*values(1, (e - 1)*n + 1:e*n))/sum(weight)
-        end associate
-      end do
+      call mean_of_block(model, now, i, name, mean)
     end do
+    !$omp end parallel do
   end subroutine mean_of_elements
+
+  !> The means of the elements of one block; zero fields are left out.
+  subroutine mean_of_block(model, now, block, name, mean)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: block !< position in the problem's list
+    character(*), intent(in) :: name
+    real(rk), intent(inout) :: mean(:) !< (elements of the mesh)
+    real(rk), allocatable :: values(:, :)
+    integer :: e, n
+    call field_of_block(model, now, block, name, values)
+    if (.not. allocated(values)) return
+    associate (part => model%inelastic(block))
+      n = part%points_of_element
+      do e = 1, size(part%elements)
+        mean(part%elements(e)) = sum(part%weight(:, e)*values(1, (e - 1)*n + 1:e*n)) &
+                                 /sum(part%weight(:, e))
+      end do
+    end associate
+  end subroutine mean_of_block
 
   !> The solids with a point that has left elasticity.
   subroutine find_inelastic_solids(model, plan, now, is_inelastic)
@@ -143,6 +172,8 @@ contains
     integer :: i, e, n
     allocate (is_inelastic(plan%num_solids), source=.false.)
     if (.not. allocated(model%inelastic)) return
+    !$omp parallel do default(none) shared(model, plan, now, is_inelastic) private(e, n) &
+    !$omp schedule(dynamic, 8) if (plan%num_solids > fewest_for_threads)
     do i = 1, size(model%inelastic)
       n = model%inelastic(i)%points_of_element
       do e = 1, size(model%inelastic(i)%elements)
@@ -150,6 +181,7 @@ contains
           .not. all(now%points(i)%is_elastic((e - 1)*n + 1:e*n))
       end do
     end do
+    !$omp end parallel do
   end subroutine find_inelastic_solids
 
   !> The nodes whose means include chosen solids.

@@ -4,7 +4,8 @@ program test_stress_operator
   use problem_definition, only: problem
   use analysis_state, only: state
   use step_plan, only: step_fixity
-  use stress_recovery, only: recovery_plan, make_recovery_plan, recover_points, max_points
+  use recovery_plans, only: make_recovery_plan, max_points, recovery_plan
+  use stress_recovery, only: recover_points
   use node_means, only: average_at_nodes
   use stress_operator, only: nodal_operator, make_nodal_operator, apply_operator
   use arch_model, only: make_arch

@@ -5,7 +5,8 @@ module stress_operator
   use node_dofs, only: num_directions
   use shape_hex8, only: corners_from_points, hex8_dofs
   use problem_definition, only: problem
-  use stress_recovery, only: recovery_plan, operators_of_block, max_points, fewest_for_threads
+  use recovery_plans, only: fewest_for_threads, max_points, recovery_plan
+  use stress_recovery, only: operators_of_block
   implicit none
   private
   public :: nodal_operator, make_nodal_operator, apply_operator
