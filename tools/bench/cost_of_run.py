@@ -53,7 +53,8 @@ def measure_static(program: Program, folder: Path, size: int) -> list[Figure]:
 def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> list[Figure]:
     """Linear increments with hardly any output, and with envelopes of the stresses.
 
-    The first over a solve of CHOLMOD alone, too, where the program of the bare solves is built.
+    The first over a solve of CHOLMOD alone, too, where the program of the bare solves is built:
+    with the factor in double precision, and with a copy in single precision.
     """
     has_bare = bench_program(program).exists()
     if not has_bare:
@@ -66,12 +67,22 @@ def measure_dynamic(program: Program, folder: Path, size: int, count: int) -> li
         if has_bare and not has_envelopes:
             run, bare = measure_beside(program, deck, partial(program.run, deck))
             figures.append(over_bare_solve(run, bare))
+            mixed = with_single_copy(deck)
+            run, bare = measure_beside(program, mixed, partial(program.run, mixed))
+            figures.append(over_bare_solve(run, bare, ", PRECISION=MIXED"))
         else:
             run = program.run(deck)
         what = "linear increment" + (" with envelopes" if has_envelopes else "") + " / solve"
         limit = None if has_envelopes else STEP_LIMIT
         figures.append(ratio_of_increment(run, "solve structure", what, limit))
     return figures
+
+
+def with_single_copy(deck: Path) -> Path:
+    """The same run with a copy of the factor in single precision."""
+    copy = deck.with_name(f"{deck.stem}_mixed.inp")
+    copy.write_text(deck.read_text().replace("*DYNAMIC", "*CONTROLS, PRECISION=MIXED\n*DYNAMIC"))
+    return copy
 
 
 def measure_jointed(program: Program, folder: Path, size: int, count: int) -> Figure:
@@ -102,15 +113,15 @@ def time_of_increment(run: Run, count: int) -> float:
     return (run.results.find("ledger.wall_s") - run.cost(ONCE)[0]) / count
 
 
-def over_bare_solve(run: Run, bare: BareSolve) -> Figure:
-    """A linear increment over a solve of CHOLMOD in the order of METIS."""
+def over_bare_solve(run: Run, bare: BareSolve, settings: str = "") -> Figure:
+    """A linear increment over a solve of CHOLMOD in the order of METIS, in double precision."""
     step = time_of_increment(run, run.cost("solve structure")[1])
     detail = (
         f"{step * 1e3:.1f} ms over {bare.own_order * 1e3:.1f} ms; "
         f"{bare.same_order * 1e3:.1f} ms in the order of the program"
     )
     scene = f"arch dam, {run.unknowns} unknowns"
-    what = "linear increment / solve of CHOLMOD alone"
+    what = f"linear increment{settings} / solve of CHOLMOD alone"
     return Figure(scene, what, step / bare.own_order, None, detail)
 
 

@@ -3,10 +3,10 @@
 !> They have no initial-stress force, so that iterations need neither their laws nor their unknowns
 !> (theory.md, 12).
 !>
-!> The choice for the first update of an increment is that of its start; the choice for the
-!> iterations that follow includes what this update has changed.
+!> The first update of an increment is that of elements which are not elastic at its start, and of
+!> their neighbours; the choice for the iterations includes what this update has changed.
 module changing_elements
-  use inelastic_forces, only: block_answer
+  use inelastic_forces, only: block_answer, has_many_elements
   use kinds, only: rk
   use material_points, only: point_state
   use problem_definition, only: problem
@@ -22,7 +22,7 @@ module changing_elements
     procedure :: choose => choose_elements
     procedure :: extend => extend_choice
     procedure :: ask_others
-    procedure, private :: tell_blocks
+    procedure, private :: add_near, tell_blocks
   end type element_choice
 
 contains
@@ -65,13 +65,7 @@ contains
         end do
       end associate
     end do
-    do i = 1, size(answers)
-      do e = 1, size(model%inelastic(i)%elements)
-        associate (element => model%inelastic(i)%elements(e))
-          self%takes_part(element) = any(is_near(model%mesh%nodes(:, element)))
-        end associate
-      end do
-    end do
+    call self%add_near(model, answers, is_near)
     call self%tell_blocks(model, answers)
   end subroutine choose_elements
 
@@ -86,23 +80,49 @@ contains
     end do
   end subroutine ask_others
 
-  !> Adds elements that are no longer elastic after an update of the others.
+  !> Adds elements that are no longer elastic after an update of the others, and those that share a
+  !> node with them.
   subroutine extend_choice(self, model, answers, has_grown)
     class(element_choice), intent(inout) :: self
     type(problem), intent(in) :: model
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     logical, intent(out) :: has_grown
-    integer :: i
+    logical :: is_near(model%mesh%num_nodes)
+    integer :: i, e
     has_grown = .false.
+    is_near = .false.
     do i = 1, size(answers)
-      associate (own => self%takes_part(model%inelastic(i)%elements), &
-                 now => answers(i)%has_excess)
-        has_grown = has_grown .or. any(now .and. .not. own)
-        self%takes_part(model%inelastic(i)%elements) = own .or. now
-      end associate
+      do e = 1, size(answers(i)%has_excess)
+        associate (element => model%inelastic(i)%elements(e))
+          if (.not. answers(i)%has_excess(e) .or. self%takes_part(element)) cycle
+          has_grown = .true.
+          is_near(model%mesh%nodes(:, element)) = .true.
+        end associate
+      end do
     end do
+    if (has_grown) call self%add_near(model, answers, is_near)
     call self%tell_blocks(model, answers)
   end subroutine extend_choice
+
+  !> Adds the elements with a node that is marked.
+  subroutine add_near(self, model, answers, is_near)
+    class(element_choice), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(block_answer), intent(in) :: answers(:) !< (blocks)
+    logical, intent(in) :: is_near(:) !< (nodes)
+    integer :: i, e
+    !$omp parallel do default(none) shared(self, model, answers, is_near) private(e) &
+    !$omp schedule(dynamic, 16) if (has_many_elements(answers))
+    do i = 1, size(answers)
+      do e = 1, size(model%inelastic(i)%elements)
+        associate (element => model%inelastic(i)%elements(e))
+          self%takes_part(element) = self%takes_part(element) .or. &
+                                     any(is_near(model%mesh%nodes(:, element)))
+        end associate
+      end do
+    end do
+    !$omp end parallel do
+  end subroutine add_near
 
   !> The next updates are those of the elements that take part.
   subroutine tell_blocks(self, model, answers)

@@ -209,6 +209,7 @@ contains
     call update_laws(self, model, system, now%task, before, after)
     call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
     now%is_lost = allocated(outcome%failure)
+    if (now%is_lost) outcome%has_converged = .false.
     call self%elements%extend(model, self%answers, now%has_further)
     if (now%has_further) call sum_forces(self, model, system, now%task, before, after)
     call self%solver%costs%stop()

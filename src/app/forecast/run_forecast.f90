@@ -61,6 +61,7 @@ module run_forecast
   real(rk), parameter :: static_memory = 2.5e-3_rk, dynamic_memory = 4.0e-3_rk !< per unknown
   real(rk), parameter :: entry_memory = 1.2e-5_rk !< per entry of the factor
   real(rk), parameter :: inverse_memory = 0.6e-5_rk !< per entry, of the inverse in its pattern
+  real(rk), parameter :: copy_memory = 4.0e-6_rk !< per entry, of a copy in single precision
   real(rk), parameter :: law_memory = 3.0e-3_rk !< per point
   real(rk), parameter :: point_memory = 0.08_rk, pair_memory = 2.4e-4_rk !< of joints
 
@@ -223,12 +224,19 @@ contains
     if (any(steps%procedure%has_inertia)) of_unknown = dynamic_memory
     memory = program_memory + entry_memory*counts%entries + of_unknown*counts%unknowns &
              + law_memory*counts%law_points
+    if (any(has_copy(steps))) memory = memory + copy_memory*counts%entries
     if (counts%points <= most_at_the_end) then
       memory = memory + pair_memory*counts%points**2
     else
       memory = memory + inverse_memory*counts%entries + point_memory*counts%points
     end if
   end function memory_of
+
+  !> Whether a step keeps a copy of the factor in single precision.
+  elemental logical function has_copy(plan)
+    type(step), intent(in) :: plan
+    has_copy = plan%procedure%scheme == 'HHT' .and. plan%controls%precision == 'MIXED'
+  end function has_copy
 
   !> Two significant digits, the second a 0 or 5 above 3: a forecast has no more.
   pure real(rk) function rounded(number)

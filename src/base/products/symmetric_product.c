@@ -3,6 +3,7 @@
  * The matrix is its lower triangle by columns, the diagonal first, with places from 1. The entries
  * of an unknown in all vectors are side by side. */
 #include "../math/each_processor.h"
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -79,19 +79,19 @@ void MULTIPLY(int unknowns, int entries, const int *start, const int *alike, con
               const double *value, const double *x, double *y)
 {
   const int middle = first_of_second_part(unknowns, entries, start);
-  const size_t below = (size_t)(unknowns - middle);
-  ENTRIES *to = (ENTRIES *)y, *second = below ? calloc(below, sizeof *second) : NULL;
+  const size_t length = (size_t)unknowns;
+  ENTRIES *to = (ENTRIES *)y, *second = middle < unknowns ? calloc(length, sizeof *second) : NULL;
   const int num_parts = second ? 2 : 1;
-#pragma omp parallel for schedule(static) num_threads(2) if (num_parts == 2)
+#pragma omp parallel for schedule(static) if (num_parts == 2 && omp_get_max_threads() > 1)
   for (int part = 0; part < num_parts; part++) {
     if (part == 0) {
-      memset(y, 0, (size_t)unknowns * sizeof *to);
+      memset(y, 0, length * sizeof *to);
       ADD_COLUMNS(0, second ? middle : unknowns, start, alike, row, value, x, y);
     } else {
-      ADD_COLUMNS(middle, unknowns, start, alike, row, value, x, (double *)(second - middle));
+      ADD_COLUMNS(middle, unknowns, start, alike, row, value, x, (double *)second);
     }
   }
-  for (size_t i = 0; second && i < below; i++) to[(size_t)middle + i] += second[i];
+  for (int i = middle; second && i < unknowns; i++) to[i] += second[i];
   free(second);
 }
 

@@ -19,8 +19,8 @@ module damage_work
 
 contains
 
-  !> Energies of an increment whose end is known, without viscosity, for RECOVERY=LEE-FENVES: those
-  !> of `find_energies` to round-off, without a return map and without principal directions.
+  !> Energies of an increment whose end is known, without viscosity, for RECOVERY=LEE-FENVES and
+  !> ENERGY: those of `find_energies` to round-off, without a return map.
   pure subroutine complete_energies(model, motion, old, new, placed, answer)
     type(concrete_model), intent(in) :: model
     type(point_motion), intent(in) :: motion
@@ -60,8 +60,12 @@ contains
       flow%s = flow%q*trial%shape + trace(finish%stress)/3.0_rk
       call value_of_curve(model%compression, placed%compression, 1.0_rk, &
                           new%backbone%measures(2), flow%rows(2), flow%compression)
-      call tension_share(flow%s, finish%share, finish%share_by)
-      finish%d = total_damage(model, new%damage(1), new%damage(2), finish%share)
+      if (model%splits_energy) then
+        call left_after(model, new%damage(1), new%damage(2), finish%left)
+      else
+        call tension_share(flow%s, finish%share, finish%share_by)
+        finish%d = total_damage(model, new%damage(1), new%damage(2), finish%share)
+      end if
     end associate
   end subroutine recall_flow
 

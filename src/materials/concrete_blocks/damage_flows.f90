@@ -168,6 +168,34 @@ contains
     end do
   end subroutine find_strengths
 
+  !> The strength in tension with RECOVERY=ENERGY and its slope (see tension_at of damage_split).
+  pure subroutine add_lateral_tension(model, num_points, parts)
+    type(concrete_model), intent(in) :: model
+    integer, intent(in) :: num_points
+    type(curve_parts), intent(inout) :: parts !< with the strengths of the curve
+    real(rk) :: c, soft, weight, rate, a, b, own, own_rate, axial, axial_rate, k, k_rate, inverse
+    integer :: i
+    c = 2.0_rk*model%poisson**2/(1.0_rk - model%poisson)
+    soft = 1.0_rk - model%compression_recovery
+    weight = model%poisson/(1.0_rk - model%poisson)*(1.0_rk - 2.0_rk*model%alpha) &
+             /((1.0_rk - model%alpha)*model%compression%strength(1))
+    !$omp simd private(rate, a, b, own, own_rate, axial, axial_rate, k, k_rate, inverse)
+    do i = 1, num_points
+      rate = parts%damage_slope(i)
+      a = 1.0_rk - (parts%damage(i) + rate*(parts%measure(i) - parts%start(i)))
+      b = 1.0_rk - soft*(1.0_rk - a)
+      own = (1.0_rk - c)*a*b/(b - c*a) ! left_t of left_after; left_c is b
+      own_rate = -own**2/(1.0_rk - c)*(1.0_rk/a**2 - c*soft/b**2)*rate
+      axial = parts%strength(i)*a/own
+      axial_rate = (parts%strength_slope(i)*a - parts%strength(i)*rate - axial*own_rate)/own
+      k = weight*(1.0_rk - own/b)
+      k_rate = -weight*(own*soft*rate/b + own_rate)/b
+      inverse = 1.0_rk/(1.0_rk + k*axial)
+      parts%strength(i) = axial*inverse
+      parts%strength_slope(i) = (axial_rate - axial**2*k_rate)*inverse**2
+    end do
+  end subroutine add_lateral_tension
+
   !> F of Eqs. 19-23 and its derivative by x (see yield_at).
   pure subroutine find_residuals(model, b)
     type(concrete_model), intent(in) :: model
@@ -178,6 +206,7 @@ contains
     by_p = -3.0_rk*model%alpha*scale
     growth = model%bulk*model%tan_dilation
     call find_strengths(b%num_points, b%factor, b%tension)
+    if (model%splits_energy) call add_lateral_tension(model, b%num_points, b%tension)
     call find_strengths(b%num_points, whole_strength, b%compression)
     associate (t => b%tension, c => b%compression)
       !$omp simd private(ratio, beta, opens, by_compression)

@@ -1,6 +1,7 @@
 !> Stresses of points alone, without energies and tangents: what the iterations of a structure need.
-!> They are those of damage_point for RECOVERY=LEE-FENVES without viscosity, to round-off, found for
-!> many points side by side, without principal directions and copies of histories.
+!> They are those of damage_point for RECOVERY=LEE-FENVES and ENERGY without viscosity, to
+!> round-off, found for many points side by side, without principal directions and copies of
+!> histories.
 module damage_stress
   use crack_band, only: band_width
   use damage_flows, only: find_kinematics, find_parts, find_residuals, flow_block, keep_flows, &
@@ -8,6 +9,7 @@ module damage_stress
   use damage_history, only: last_damage, last_measure, last_strain, width_row
   use damage_increment, only: yield_tolerance
   use damage_model, only: concrete_model, place_curves, placed_curves
+  use damage_split, only: fractions_left => stiffness_left, left_after
   use damage_trials, only: find_trials, trial_block
   use flow_search, only: find_flows, flow_ends
   use kinds, only: rk
@@ -22,8 +24,7 @@ contains
   !> Whether `find_stresses` can be used.
   pure logical function has_plain_stress(model)
     type(concrete_model), intent(in) :: model
-    has_plain_stress = .not. (model%splits_energy .or. model%recovers_by_sign &
-                              .or. model%viscosity > 0.0_rk)
+    has_plain_stress = .not. (model%recovers_by_sign .or. model%viscosity > 0.0_rk)
   end function has_plain_stress
 
   !> Stresses and histories of the points without an answer.
@@ -190,10 +191,9 @@ contains
     integer, intent(in) :: k, i !< place in the list, point
     type(flow_ends), intent(in) :: ends
     type(point_state), intent(inout) :: new !< with the old history
-    real(rk) :: slip, swelling, left
+    real(rk) :: slip, swelling
     slip = 1.5_rk*ends%x(k)*ends%q(k)/ends%radius(k)
     swelling = ends%x(k)*model%tan_dilation/3.0_rk
-    left = stiffness_left(model, ends%d_t(k), ends%d_c(k), ends%share(k))
     associate (shape => trials%deviator(:, k), internal => new%internal(:, i), &
                stress => new%stress(:, i))
       if (ends%x(k) > 0.0_rk) then
@@ -205,12 +205,60 @@ contains
         internal(last_damage) = max(internal(last_damage), ends%d_c(k))
         if (ends%kappa_t(k) > 0.0_rk) internal(width_row) = ends%width(k)
       end if
-      stress(1:3) = left*(ends%q(k)*shape(1:3) - ends%p(k))
-      stress(4:6) = left*(ends%q(k)*shape(4:6))
+      stress = ends%q(k)*shape
+      stress(1:3) = stress(1:3) - ends%p(k)
+      if (model%splits_energy) then
+        call take_left(model, internal(last_measure + 1), internal(last_damage), &
+                       ends%q(k)*trials%shape(:, k) - ends%p(k), stress)
+      else
+        stress = stiffness_left(model, ends%d_t(k), ends%d_c(k), ends%share(k))*stress
+      end if
     end associate
     new%is_elastic(i) = .not. (ends%x(k) > 0.0_rk .or. ends%kappa_t(k) > 0.0_rk &
                                .or. ends%kappa_c(k) > 0.0_rk)
   end subroutine take_end
+
+  !> left_t sigma_t + left_c sigma_c of RECOVERY=ENERGY (see damage_split), sigma_c by the
+  !> projection P_i = (S - s_j)(S - s_k)/((s_i - s_j)(s_i - s_k)) on one principal direction. Where
+  !> the first one alone opens, sigma_c is S - k s_1 - (1 - k) s_1 P_1, k = nu/(1 - nu), and
+  !> s_1 - s_2 is at least (1 - k) s_1. Where the third one alone does not, it is E e_3 P_3, and
+  !> s_2 - s_3 is at least -E e_3. Values that are near to each other therefore cost no digits.
+  pure subroutine take_left(model, tension, compression, s, stress)
+    type(concrete_model), intent(in) :: model
+    real(rk), intent(in) :: tension, compression !< d_t, d_c
+    real(rk), intent(in) :: s(3) !< principal effective stresses, the largest first [Pa]
+    real(rk), intent(inout) :: stress(6) !< effective on entry, nominal on return [Pa]
+    type(fractions_left) :: left
+    real(rk) :: k, pressed(6), third
+    call left_after(model, tension, compression, left)
+    k = model%poisson/(1.0_rk - model%poisson)
+    third = s(3) - model%poisson*(s(1) + s(2)) ! E e_3
+    if (s(1) <= 0.0_rk) then
+      stress = left%value(2)*stress
+    else if (s(2) <= k*s(1)) then
+      pressed = stress - (1.0_rk - k)*s(1)*projection(stress, s(1), s(2), s(3))
+      pressed(1:3) = pressed(1:3) - k*s(1)
+      stress = left%value(1)*stress + (left%value(2) - left%value(1))*pressed
+    else if (third < 0.0_rk) then
+      stress = left%value(1)*stress + (left%value(2) - left%value(1))*third &
+               *projection(stress, s(3), s(1), s(2))
+    else
+      stress = left%value(1)*stress
+    end if
+  end subroutine take_left
+
+  !> Projection on the direction of one principal value of a tensor.
+  pure function projection(t, own, second, third) result(on_own)
+    real(rk), intent(in) :: t(6), own, second, third !< tensor and its principal values
+    real(rk) :: on_own(6)
+    real(rk) :: a(3), b(3)
+    a = t(1:3) - second
+    b = t(1:3) - third
+    on_own = [a(1)*b(1) + t(4)**2 + t(5)**2, t(4)**2 + a(2)*b(2) + t(6)**2, &
+              t(5)**2 + t(6)**2 + a(3)*b(3), t(4)*(b(2) + a(1)) + t(5)*t(6), &
+              t(5)*(b(3) + a(1)) + t(4)*t(6), t(6)*(b(3) + a(2)) + t(4)*t(5)] &
+             /((own - second)*(own - third))
+  end function projection
 
   !> 1 - d of Eqs. 15-16 (see total_damage).
   pure real(rk) function stiffness_left(model, tension, compression, share) result(left)

@@ -81,10 +81,10 @@ contains
     type(placed_curves) :: placed
     real(rk), dimension(points%num_points) :: factor, stored
     real(rk) :: d(6, 6)
-    logical :: is_plain, has_answer(points%num_points), has_energy(points%num_points)
+    logical, dimension(points%num_points) :: has_answer, has_energy, is_new
     integer :: i
     if (time%is_updated .and. has_plain_stress(self%model)) then
-      call add_energies(self%model, points, old, new)
+      call add_energies(self%model, points,.not. new%is_elastic, old, new)
       return
     end if
     factor = 1.0_rk
@@ -107,12 +107,15 @@ contains
       new%energy(stored_energy, i) = stored(i)
       if (motion%wants_tangent) tangent(:, :, i) = d
     end do
-    has_energy = has_answer .or. motion%wants_energy
-    is_plain = has_plain_stress(self%model) &
-               .and. .not. (motion%wants_tangent .or. motion%wants_energy)
-    if (is_plain) call find_plain_stresses(self%model, points, old, placed, new, has_answer)
+    has_energy = has_answer
+    if (has_plain_stress(self%model) .and. .not. motion%wants_tangent) then
+      call find_plain_stresses(self%model, points, old, placed, new, has_answer)
+      is_new = has_answer .and. .not. (has_energy .or. new%is_elastic)
+      if (motion%wants_energy) call add_energies(self%model, points, is_new, old, new)
+    end if
     do i = 1, points%num_points
       if (has_answer(i)) cycle
+      has_energy(i) = motion%wants_energy
       motion%edges = points%edges(:, :, i)
       call yield_point(self%model, motion, i, old, placed, new, answer)
       if (motion%wants_tangent) tangent(:, :, i) = answer%tangent
@@ -137,9 +140,10 @@ contains
   end subroutine store_elastic_energies
 
   !> Energies of points that have yielded or cracked, and whose stress and history are known.
-  pure subroutine add_energies(model, points, old, new)
+  pure subroutine add_energies(model, points, is_wanted, old, new)
     type(concrete_model), intent(in) :: model
     type(point_set), intent(in) :: points
+    logical, intent(in) :: is_wanted(:) !< (points)
     type(point_state), intent(in) :: old
     type(point_state), intent(inout) :: new !< with stresses and histories
     type(point_motion) :: motion
@@ -148,7 +152,12 @@ contains
     type(placed_curves) :: placed
     integer :: i
     do i = 1, points%num_points
-      if (new%is_elastic(i)) cycle
+      if (.not. is_wanted(i)) cycle
+      if (model%splits_energy .and. .not. flows(old%internal(:, i), new%internal(:, i))) then
+        new%energy(stored_energy, i) = 0.5_rk*dot_product(new%stress(:, i), new%strain(:, i) &
+                                                          - new%internal(:last_strain, i))
+        cycle
+      end if
       motion%before = old%strain(:, i)
       motion%strain = new%strain(:, i)
       motion%edges = points%edges(:, :, i)
@@ -159,6 +168,12 @@ contains
       call take_energies(answer, old%energy(:, i), new%energy(:, i))
     end do
   end subroutine add_energies
+
+  !> Whether the plastic strain of a point has changed.
+  pure logical function flows(old, new)
+    real(rk), intent(in) :: old(:), new(:) !< internal variables at both ends of the increment
+    flows = any(abs(new(:last_strain) - old(:last_strain)) > 0.0_rk)
+  end function flows
 
   !> Writes the energies at the end of an increment.
   pure subroutine take_energies(answer, old, new)

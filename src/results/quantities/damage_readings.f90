@@ -24,12 +24,22 @@ module damage_readings
   character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
                              'inelastic_volume,cracking,crushing,created'
   integer, parameter :: num_columns = 9
+  integer, parameter :: fewest_blocks = 100 !< that several threads read
 
   !> The largest damage since the start, and its point.
   type :: damage_extreme
     type(extreme) :: at
     integer :: element = 0, point = 0 !< number in the deck; 1..8
   end type damage_extreme
+
+  !> What a block adds to the record of an increment; components as there.
+  type :: block_damage
+    real(rk) :: volume(size(levels)) = 0.0_rk
+    integer :: elements(size(levels)) = 0, inelastic_elements = 0
+    real(rk) :: inelastic_volume = 0.0_rk, cracking = 0.0_rk, crushing = 0.0_rk, created = 0.0_rk
+    integer :: first_t = 0, first_c = 0 !< points of the largest damages; 0: none
+    real(rk) :: damage_t = 0.0_rk, damage_c = 0.0_rk !< the largest damages
+  end type block_damage
 
   !> Points of a block on the faces of the dam.
   type :: block_faces
@@ -86,52 +96,81 @@ contains
     end do
   end function points_on
 
-  !> Records one increment. Elastic blocks cost next to nothing.
+  !> Records one increment. Elastic blocks cost next to nothing. Sums are those of blocks, in their
+  !> order: the same for any number of threads.
   subroutine note_damage(model, now, record)
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(damage_record), intent(inout) :: record
-    real(rk), allocatable :: tension(:, :), compression(:, :)
+    type(block_damage) :: found(size(model%inelastic))
     integer :: i
+    !$omp parallel do default(none) shared(model, now, found) schedule(dynamic, 8) &
+    !$omp if (size(found) > fewest_blocks)
+    do i = 1, size(found)
+      if (.not. all(now%points(i)%is_elastic)) call read_block(model, now, i, found(i))
+    end do
+    !$omp end parallel do
     record%volume = 0.0_rk
     record%elements = 0
-    record%inelastic_volume = 0.0_rk
-    record%inelastic_elements = 0
-    record%cracking = now%energy%left_cracking
-    record%crushing = now%energy%left_crushing
-    record%created = now%energy%left_created
-    do i = 1, size(model%inelastic)
-      if (all(now%points(i)%is_elastic)) cycle
-      call field_of_block(model, now, i, 'DAMAGET', tension)
-      call field_of_block(model, now, i, 'DAMAGEC', compression)
-      call note_largest(record%tension, tension, model%inelastic(i), now%total_time)
-      call note_largest(record%compression, compression, model%inelastic(i), now%total_time)
-      call measure_block(model%inelastic(i), now, i, tension, record)
+    record%inelastic_volume = sum(found%inelastic_volume)
+    record%inelastic_elements = sum(found%inelastic_elements)
+    record%cracking = now%energy%left_cracking + sum(found%cracking)
+    record%crushing = now%energy%left_crushing + sum(found%crushing)
+    record%created = now%energy%left_created + sum(found%created)
+    do i = 1, size(found)
+      record%volume = record%volume + found(i)%volume
+      record%elements = record%elements + found(i)%elements
+      call note_largest(record%tension, found(i)%first_t, found(i)%damage_t, model%inelastic(i), &
+                        now%total_time)
+      call note_largest(record%compression, found(i)%first_c, found(i)%damage_c, &
+                        model%inelastic(i), now%total_time)
     end do
   end subroutine note_damage
 
   !> Updates the largest damage so far.
-  subroutine note_largest(largest, damage, part, time)
+  subroutine note_largest(largest, point, damage, part, time)
     type(damage_extreme), intent(inout) :: largest
-    real(rk), allocatable, intent(in) :: damage(:, :) !< (1, points); unallocated: none
+    integer, intent(in) :: point !< of the block; 0: none
+    real(rk), intent(in) :: damage !< there
     type(inelastic_block), intent(in) :: part
     real(rk), intent(in) :: time !< [s]
-    integer :: p
-    if (.not. allocated(damage)) return
-    p = maxloc(damage(1, :), dim=1)
-    if (damage(1, p) <= largest%at%value) return
-    largest%at = extreme(.true., damage(1, p), time, part%points%x(:, p))
-    largest%element = part%points%element(p)
-    largest%point = part%points%number(p)
+    if (point == 0 .or. damage <= largest%at%value) return
+    largest%at = extreme(.true., damage, time, part%points%x(:, point))
+    largest%element = part%points%element(point)
+    largest%point = part%points%number(point)
   end subroutine note_largest
 
-  !> Adds volumes, counts and energies of a block.
-  subroutine measure_block(part, now, block, tension, record)
+  !> Largest damages, volumes, counts and energies of a block.
+  subroutine read_block(model, now, block, found)
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    integer, intent(in) :: block !< its position
+    type(block_damage), intent(inout) :: found
+    real(rk), allocatable :: tension(:, :), compression(:, :)
+    call field_of_block(model, now, block, 'DAMAGET', tension)
+    call field_of_block(model, now, block, 'DAMAGEC', compression)
+    call find_largest(tension, found%first_t, found%damage_t)
+    call find_largest(compression, found%first_c, found%damage_c)
+    call measure_block(model%inelastic(block), now, block, tension, found)
+  end subroutine read_block
+
+  !> The largest damage of a block and its point.
+  subroutine find_largest(damage, point, largest)
+    real(rk), allocatable, intent(in) :: damage(:, :) !< (1, points); unallocated: none
+    integer, intent(inout) :: point
+    real(rk), intent(inout) :: largest
+    if (.not. allocated(damage)) return
+    point = maxloc(damage(1, :), dim=1)
+    largest = damage(1, point)
+  end subroutine find_largest
+
+  !> Volumes, counts and energies of a block.
+  subroutine measure_block(part, now, block, tension, found)
     type(inelastic_block), intent(in) :: part
     type(state), intent(in) :: now
     integer, intent(in) :: block !< its position
     real(rk), allocatable, intent(in) :: tension(:, :) !< (1, points); unallocated: none
-    type(damage_record), intent(inout) :: record
+    type(block_damage), intent(inout) :: found
     integer :: e, n, first, last, level
     n = part%points_of_element
     do e = 1, size(part%elements)
@@ -139,18 +178,18 @@ contains
       last = e*n
       associate (points => now%points(block), weight => part%weight(:, e))
         if (all(points%is_elastic(first:last))) cycle
-        record%inelastic_elements = record%inelastic_elements + 1
-        record%inelastic_volume = record%inelastic_volume + &
-                                  sum(weight, mask=.not. points%is_elastic(first:last))
-        record%cracking = record%cracking + sum(weight*points%energy(fracture_energy, first:last))
-        record%crushing = record%crushing + sum(weight*points%energy(crushing_energy, first:last))
-        record%created = record%created + sum(weight*points%energy(created_energy, first:last))
+        found%inelastic_elements = found%inelastic_elements + 1
+        found%inelastic_volume = found%inelastic_volume + &
+                                 sum(weight, mask=.not. points%is_elastic(first:last))
+        found%cracking = found%cracking + sum(weight*points%energy(fracture_energy, first:last))
+        found%crushing = found%crushing + sum(weight*points%energy(crushing_energy, first:last))
+        found%created = found%created + sum(weight*points%energy(created_energy, first:last))
         if (.not. allocated(tension)) cycle
         do level = 1, size(levels)
           if (maxval(tension(1, first:last)) < least(level)) exit
-          record%elements(level) = record%elements(level) + 1
-          record%volume(level) = record%volume(level) + &
-                                 sum(weight, mask=tension(1, first:last) >= least(level))
+          found%elements(level) = found%elements(level) + 1
+          found%volume(level) = found%volume(level) + &
+                                sum(weight, mask=tension(1, first:last) >= least(level))
         end do
       end associate
     end do

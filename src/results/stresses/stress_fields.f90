@@ -324,8 +324,8 @@ contains
     self%has_principals = .true.
   end subroutine need_principals
 
-  !> Computes the principal stresses at the points, once an increment; zero at points that an
-  !> element does not have.
+  !> Computes the principal stresses at the points, once an increment. Values at points that an
+  !> element does not have are not used.
   subroutine need_point_principals(self, model, now)
     class(recovered_fields), intent(inout) :: self
     type(problem), intent(in) :: model

@@ -39,6 +39,7 @@ program test_changing_elements
   log%suite = 'changing_elements'
   call late_crack(log)
   call chosen_at_first(log)
+  call late_failure(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -64,8 +65,8 @@ contains
     associate (takes_part => some%solids%elements%takes_part)
       call check(log, takes_part(middle_box), &
                  'the middle takes part at the end')
-      call check(log,.not. (takes_part(5) .or. takes_part(7)), &
-                 'its neighbours do not')
+      call check(log, takes_part(5) .and. takes_part(7), 'its neighbours do, too')
+      call check(log,.not. (takes_part(4) .or. takes_part(8)), 'their neighbours do not')
     end associate
     call compare(log, some, all_of_them, 'with the laws of some elements')
     call compare(log, whole, all_of_them, 'with solves for some unknowns too')
@@ -85,6 +86,19 @@ contains
     call check(log, all(some%solids%elements%takes_part .eqv. [(k <= 2, k=1, 10)]), &
                'the root and its neighbour take part')
   end subroutine chosen_at_first
+
+  !> The middle, which takes no part, has no stress for its strain in equilibrium.
+  subroutine late_failure(log)
+    type(test_log), intent(inout) :: log
+    type(solved_increment) :: some
+    type(problem) :: model
+    real(rk) :: root, middle
+    call measure_elastic(root, middle)
+    call make_beam(0.5_rk*root, 1.01_rk*middle, model, 1.005_rk*middle)
+    call solve(model, .true., .true., some)
+    call check(log,.not. some%outcome%has_converged, 'no equilibrium where a law fails late')
+    call check(log, index(some%outcome%failure, 'strained too far') > 0, 'the reason')
+  end subroutine late_failure
 
   !> Solutions differ by the tolerance, 1e-12 of the forces, times what softening makes of it.
   subroutine compare(log, one, other, text)
@@ -139,9 +153,11 @@ contains
 
   !> Ten boxes of 1 m x 0.5 m x 0.5 m: root and middle with their strains at strength; the others do
   !> not reach theirs.
-  subroutine make_beam(root, middle, model)
+  subroutine make_beam(root, middle, model, largest)
     real(rk), intent(in) :: root, middle
     type(problem), intent(out) :: model
+    real(rk), intent(in), optional :: largest !< strain of the middle
+    type(damage_law) :: law
     type(elastic_law) :: elastic
     integer :: k
     call make_row([(real(k, rk), k=0, num_boxes)], 0.5_rk, 0.5_rk, spread(young, 1, num_boxes), &
@@ -161,7 +177,9 @@ contains
     call put_law(damage_law(elastic=elastic, threshold=1.0_rk), [2, 3, 4, 5, 7, 8, 9, 10], &
                  model)
     call put_law(damage_law(elastic=elastic, threshold=root, slope=slope), [1], model)
-    call put_law(damage_law(elastic=elastic, threshold=middle, slope=slope), [6], model)
+    law = damage_law(elastic=elastic, threshold=middle, slope=slope)
+    if (present(largest)) law%largest_strain = largest
+    call put_law(law, [6], model)
   end subroutine make_beam
 
   !> The increment in which the middle plane is loaded.
