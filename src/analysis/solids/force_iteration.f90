@@ -211,9 +211,10 @@ contains
     now%is_lost = allocated(outcome%failure)
     if (now%is_lost) outcome%has_converged = .false.
     call self%elements%extend(model, self%answers, now%has_further)
-    if (now%has_further) call sum_forces(self, model, system, now%task, before, after)
     call self%solver%costs%stop()
     if (.not. now%has_further .or. now%is_lost) return
+    ! Tangents that forces have been added to are not used again.
+    call evaluate(self, model, system, now%task, before, after)
     call take_answer(self, system, now)
     call measure_iterate(self, system, before, now, outcome)
     now%first = size(outcome%history) + 1
