@@ -17,9 +17,10 @@ module inelastic_blocks
   use slope_products, only: add_forces_of_stress, find_symmetric_gradient
   implicit none
   private
-  public :: inelastic_block, list_inelastic_blocks
+  public :: inelastic_block, list_inelastic_blocks, fewest_blocks
 
   integer, parameter :: largest_block = 16 !< elements; their points fit the cache of a core
+  integer, parameter :: fewest_blocks = 100 !< from which several threads read results or energies
 
   type, extends(guest) :: inelastic_block
     integer :: material = 0 !< position in the problem's list

@@ -74,8 +74,7 @@ contains
     call self%mixer%forget()
     now%rhs = now%task%balance%rhs
     if (now%task%is_refined) then
-      call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-      now%guess = self%excess(:n) - product(:n)
+      now%guess = remaining_excess(self, system, now%task%x)
       now%moved = norm(now%task%start + now%task%x - before%motion%q)
       return
     end if
@@ -87,8 +86,7 @@ contains
       now%task%x(:n) = now%task%predicted
       if (self%may_choose) call choose_from_answers(self, model, before)
       call evaluate(self, model, system, now%task, before, after)
-      call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-      now%guess = self%excess(:n) - product(:n)
+      now%guess = remaining_excess(self, system, now%task%x)
       self%elements%is_made = .false. ! for the iterations: made from these answers
       call choose_elements(self, model, system, before, now)
     end if
@@ -145,21 +143,23 @@ contains
     call evaluate(self, model, system, now%task, before, after)
     call find_failure(model, self%answers, outcome%size_ratio, outcome%failure)
     now%is_lost = allocated(outcome%failure)
-    call take_answer(self, system, now)
+    now%answer = remaining_excess(self, system, now%task%x)
   end subroutine find_answer
 
-  !> s' from the initial-stress force of the last evaluation.
-  subroutine take_answer(self, system, now)
+  !> s(start + x) - A x: the initial-stress force of the last evaluation without what the matrix has
+  !> of it.
+  function remaining_excess(self, system, x) result(force)
     class(solid_solver), intent(in) :: self
     type(dam_system), intent(in) :: system
-    type(iterate_state), intent(inout) :: now
+    real(rk), intent(in) :: x(:) !< (num_total) of the evaluation [m]
+    real(rk) :: force(system%matrix%num_free) !< [N]
     real(rk) :: product(system%matrix%num_total)
-    call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-    now%answer = self%excess(:size(now%guess)) - product(:size(now%guess))
-  end subroutine take_answer
+    call self%matrix%multiply_lost(system%matrix, x, product)
+    force = self%excess(:size(force)) - product(:size(force))
+  end function remaining_excess
 
   !> Chooses the elements and unknowns that the next iterations change: after the first update of
-  !> all elements, and when further elements are no longer elastic. A matrix of lost stiffness may
+  !> an increment, and when further elements are no longer elastic. A matrix of lost stiffness may
   !> hold any inelastic element.
   subroutine choose_elements(self, model, system, before, now)
     class(solid_solver), intent(inout) :: self
@@ -215,7 +215,7 @@ contains
     if (.not. now%has_further .or. now%is_lost) return
     ! Tangents that forces have been added to are not used again.
     call evaluate(self, model, system, now%task, before, after)
-    call take_answer(self, system, now)
+    now%answer = remaining_excess(self, system, now%task%x)
     call measure_iterate(self, system, before, now, outcome)
     now%first = size(outcome%history) + 1
   end subroutine check_others
@@ -319,9 +319,6 @@ contains
     type(state), intent(in) :: after
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: product(size(after%motion%q))
-    integer :: n
-    n = size(now%guess)
     now%unbalance = now%answer - now%guess
     now%base_force = now%force
     now%share = 1.0_rk
@@ -336,8 +333,7 @@ contains
       if (now%is_lost) deallocate (error)
       return
     end if
-    call self%matrix%multiply_lost(system%matrix, now%task%x, product)
-    now%base = self%excess(:n) - product(:n)
+    now%base = remaining_excess(self, system, now%task%x)
     now%guess = now%base
   end subroutine linearise
 end submodule force_iteration

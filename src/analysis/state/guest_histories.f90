@@ -2,14 +2,12 @@
 module guest_histories
   use guest_history, only: history, history_slot, stored_work
   use guest_type, only: guest
+  use inelastic_blocks, only: fewest_blocks
   use problem_definition, only: problem
   use analysis_state, only: state
   implicit none
   private
   public :: history_reference, list_histories, start_histories, sum_work
-
-  !> Fewer histories are faster on one thread.
-  integer, parameter :: fewest_for_threads = 100
 
   !> A history, and the guest that it belongs to.
   type :: history_reference
@@ -73,7 +71,7 @@ contains
     call list_histories(now, list, model)
     allocate (part(size(list)))
     !$omp parallel do default(none) shared(list, part) schedule(dynamic, 8) &
-    !$omp if (size(list) > fewest_for_threads)
+    !$omp if (size(list) > fewest_blocks)
     do i = 1, size(list)
       if (associated(list(i)%own)) call list(i)%owner%add_work(list(i)%own, part(i))
     end do

@@ -4,7 +4,7 @@ module damage_readings
   use kinds, only: rk
   use material_points, only: created_energy, crushing_energy, fracture_energy
   use shape_hex8, only: corner_of_point
-  use inelastic_blocks, only: inelastic_block
+  use inelastic_blocks, only: fewest_blocks, inelastic_block
   use problem_definition, only: problem
   use analysis_state, only: state
   use dam_faces, only: dam_skin
@@ -24,7 +24,6 @@ module damage_readings
   character(*), parameter :: damage_columns = 'DAMAGET,DAMAGEC,volume_10,volume_50,volume_90,'// &
                              'inelastic_volume,cracking,crushing,created'
   integer, parameter :: num_columns = 9
-  integer, parameter :: fewest_blocks = 100 !< that several threads read
 
   !> The largest damage since the start, and its point.
   type :: damage_extreme

@@ -7,6 +7,7 @@ module run_records
   use analysis_state, only: state
   use dam_faces, only: dam_skin, find_dam_faces
   use dam_mesh, only: element_is_there
+  use inelastic_blocks, only: fewest_blocks
   use envelopes, only: envelope, open_envelope, note_envelope, note_means
   use extremes, only: extreme, extremes_by_face, may_exceed, note_values
   use joint_readings, only: joint_record, open_joint_record, note_joint
@@ -25,9 +26,6 @@ module run_records
   implicit none
   private
   public :: run_record, text_item
-
-  !> Blocks from which several threads read their fields.
-  integer, parameter :: fewest_blocks = 100
 
   !> One text of a list.
   type :: text_item
