@@ -46,7 +46,7 @@ contains
         if (self%has_stopped) exit
       end if
       call choose_elements(self, model, system, before, now)
-      call choose_guess(self, model, system, after, now, error)
+      call choose_guess(self, model, system, now, error)
       if (allocated(error) .or. now%is_lost) return
     end do
     if (outcome%has_converged .and. .not. self%time%wants_energy) then
@@ -292,11 +292,10 @@ contains
   end subroutine measure_iterate
 
   !> Chooses the next guess of s.
-  subroutine choose_guess(self, model, system, after, now, error)
+  subroutine choose_guess(self, model, system, now, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(state), intent(in) :: after
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     now%tries = now%tries + 1
@@ -307,16 +306,15 @@ contains
       now%share = 0.5_rk*now%share
       now%guess = now%base - (1.0_rk - now%share)*now%unbalance
     else
-      call linearise(self, model, system, after, now, error)
+      call linearise(self, model, system, now, error)
     end if
   end subroutine choose_guess
 
   !> Takes the tangent at the present iterate.
-  subroutine linearise(self, model, system, after, now, error)
+  subroutine linearise(self, model, system, now, error)
     class(solid_solver), intent(inout) :: self
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(state), intent(in) :: after
     type(iterate_state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     now%unbalance = now%answer - now%guess
