@@ -164,11 +164,11 @@ contains
       call sum_contact(system%operator, now)
       if (goes_on) then
         call keep_accelerations(last, own)
-        call change_acceleration(model, system, plan%first_increment, last, now, error)
+        call change_acceleration(model, system, plan, last, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
         own%balanced = own%inertia + (last%balanced - last%inertia)
       else
-        call start_anew(model, system, plan%first_increment, now, error)
+        call start_anew(model, system, plan, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
         own%balanced = own%inertia
       end if
@@ -177,13 +177,13 @@ contains
 
   !> The acceleration that balances all forces, those by the acceleration of supports among them.
   !> Joints act by the tractions that the step before has passed on, if any.
-  subroutine start_anew(model, system, dt, now, error)
+  subroutine start_anew(model, system, plan, now, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: dt !< first increment [s]
+    type(step), intent(in) :: plan
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
-    real(rk), dimension(size(now%motion%a)) :: given, force, passed_on
+    real(rk), dimension(size(now%motion%a)) :: given, force, passed_on, a
     associate (own => now%motion, n => system%matrix%num_free)
       given = own%a
       given(:n) = 0.0_rk
@@ -194,17 +194,17 @@ contains
         call system%operator%add_forces(own%carried, passed_on)
         force = force + own%contact - passed_on
       end if
-      call find_start(model, system, now%joints, dt, own%external, force, own%a, error)
-      if (.not. allocated(error)) own%a(n + 1:) = given(n + 1:)
+      call find_start(model, system, plan, now, force, a, error)
+      if (.not. allocated(error)) own%a = [a(:n), given(n + 1:)]
     end associate
   end subroutine start_anew
 
   !> Adds the acceleration by what has changed since the step before: forces, mass and the
   !> acceleration of supports, if that is more than round-off.
-  subroutine change_acceleration(model, system, dt, last, now, error)
+  subroutine change_acceleration(model, system, plan, last, now, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    real(rk), intent(in) :: dt !< first increment [s]
+    type(step), intent(in) :: plan
     type(motion), intent(in) :: last !< at the end of the step before
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
@@ -214,7 +214,7 @@ contains
       change = unbalanced_force(own) - unbalanced_force(last) + last%inertia - change
       if (length(change(:n)) <= round_off*max(length(own%external(:n)), &
                                               length(own%internal(:n)))) return
-      call find_start(model, system, now%joints, dt, own%external, change, more, error)
+      call find_start(model, system, plan, now, change, more, error)
       if (.not. allocated(error)) own%a(:n) = own%a(:n) + more(:n)
     end associate
   end subroutine change_acceleration

@@ -4,6 +4,7 @@ module start_acceleration
   use errors, only: error_type, raise, system_failed
   use global_vectors, only: norm
   use problem_definition, only: problem
+  use analysis_state, only: state
   use joint_law, only: joint_state, state_open
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
@@ -11,13 +12,11 @@ module start_acceleration
   use initial_acceleration, only: find_acceleration
   use massless_acceleration, only: find_constrained_acceleration, find_weight, leave_out_fast
   use massless_solids, only: has_massless
+  use step_plan, only: step
   implicit none
   private
   public :: find_start
 
-  !> Forces that do not balance, over the loads: less is the remainder of the static step before,
-  !> and not worth a factor.
-  real(rk), parameter :: remainder = 1.0e-9_rk
   !> Growth of the share of stiffness from one trial to the next, and trials. A static force on
   !> massless parts leaves round-off that falls with the square of the share; the iteration grows.
   real(rk), parameter :: growth = 10.0_rk
@@ -30,35 +29,47 @@ contains
 
   !> Acceleration of all unknowns under the forces r. Open points of joints hold nothing; where a
   !> massless part has no other hold, all points are taken as closed, as they are in K_eff.
-  subroutine find_start(model, system, joints, dt, load, r, a, error)
+  subroutine find_start(model, system, plan, now, r, a, error)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
-    type(joint_state), intent(in) :: joints(:) !< at the start of the step
-    real(rk), intent(in) :: dt !< first increment [s]
-    real(rk), intent(in) :: load(:) !< (num_total) part of r that sets the tolerance [N]
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< at the start of the step
     real(rk), intent(in) :: r(:) !< (num_total) [N]
     real(rk), intent(out) :: a(:) !< (num_total) [m/s2]
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: stiffness(:)
-    real(rk) :: eps
-    logical :: is_definite, leaves_open
-    integer :: trial, worst
+    logical :: is_definite
     is_definite = .false.
     ! M of solids without mass may have a diagonal of masses, of joints and ties, and be singular.
     if (.not. has_massless(model)) call find_acceleration(system%matrix, system%mass, r, a, &
                                                           is_definite)
     if (is_definite) return
     a = 0.0_rk
-    if (is_balanced(system%matrix%num_free, load, r)) return
+    if (is_balanced(system%matrix%num_free, plan, now, r)) return
+    call find_constrained(model, system, plan%first_increment, now, r, a, error)
+  end subroutine find_start
+
+  !> The same where parts have no mass.
+  subroutine find_constrained(model, system, dt, now, r, a, error)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    real(rk), intent(in) :: dt !< first increment [s]
+    type(state), intent(in) :: now !< at the start of the step
+    real(rk), intent(in) :: r(:) !< (num_total) [N]
+    real(rk), intent(inout) :: a(:) !< (num_total) [m/s2]
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: stiffness(:)
+    real(rk) :: eps
+    logical :: leaves_open
+    integer :: trial, worst
     call find_weight(system%matrix, system%mass, system%stiffness, eps)
     if (.not. eps > 0.0_rk) return ! no mass anywhere
     leaves_open = .true.
     do
-      call add_closed_joints(model, system, joints, leaves_open, stiffness)
+      call add_closed_joints(model, system, now%joints, leaves_open, stiffness)
       do trial = 1, most_trials
         call find_constrained_acceleration(system%matrix, system%mass, system%mass &
-                                           + growth**(trial - 1)*eps*stiffness, load, r, a, worst, &
-                                           error)
+                                           + growth**(trial - 1)*eps*stiffness, &
+                                           now%motion%external, r, a, worst, error)
         if (is_final(worst, error)) exit
         if (allocated(error)) exit ! a part is free, whatever the share
       end do
@@ -70,7 +81,7 @@ contains
     else if (.not. allocated(error)) then
       call leave_out_fast(system%matrix, system%mass, (dt/fastest_motion)**2, stiffness, a, error)
     end if
-  end subroutine find_start
+  end subroutine find_constrained
 
   !> Whether other joints would not help: an acceleration is found, or the system has failed. A
   !> divided matrix that is singular has an error without a place.
@@ -81,15 +92,19 @@ contains
     if (allocated(error)) is_final = error%exit_code == system_failed
   end function is_final
 
-  !> Whether the loads are balanced where a step starts. Without loads massless parts that nothing
-  !> holds would not be found.
-  logical function is_balanced(num_free, load, r)
+  !> Whether the forces balance as well as an increment of the step must balance them: what is left
+  !> is the residual of the step before, and not worth a factor. The first increment makes up for it.
+  !> Without loads massless parts that nothing holds would not be found.
+  logical function is_balanced(num_free, plan, now, r)
     integer, intent(in) :: num_free
-    real(rk), intent(in) :: load(:), r(:) !< (num_total) [N]
+    type(step), intent(in) :: plan
+    type(state), intent(in) :: now !< at the start of the step
+    real(rk), intent(in) :: r(:) !< (num_total) [N]
     real(rk) :: size_of_load
-    size_of_load = norm(load(:num_free))
+    size_of_load = norm(now%motion%external(:num_free))
     is_balanced = size_of_load > 0.0_rk &
-                  .and. norm(r(:num_free)) <= remainder*size_of_load
+                  .and. norm(r(:num_free)) <= plan%controls%residual_tolerance &
+                  *max(size_of_load, now%largest_force)
   end function is_balanced
 
   !> Error: a massless part that nothing holds, or an iteration that does not converge.
