@@ -1,10 +1,11 @@
 !> The parameters of *JOINT LAW with TYPE=CONTRACTION.
 module contraction_keyword
+  use deck_card, only: card
   use keyword_spec, only: field, keyword_variant, kind_real
   use kinds, only: rk
   implicit none
   private
-  public :: describe_contraction
+  public :: describe_contraction, stiffness_of_thickness
 
   character, parameter :: nl = new_line('a')
 
@@ -43,4 +44,14 @@ contains
                     '(augmented Lagrangian)', 'm', &
                     'pressure/KN', lowest=0.0_rk, excludes_lowest=.true.)])
   end subroutine describe_contraction
+
+  !> The stiffness that THICKNESS gives: 'KN' and what follows from it, 'KT', or '' for none.
+  pure function stiffness_of_thickness(this) result(name)
+    type(card), intent(in) :: this
+    character(:), allocatable :: name
+    name = ''
+    if (this%has('PENETRATION') .and. .not. this%has('KT')) name = 'KT'
+    if (this%has('KN')) return
+    if (.not. this%has('PENETRATION') .or. this%real('TENSILE STRENGTH') > 0.0_rk) name = 'KN'
+  end function stiffness_of_thickness
 end module contraction_keyword

@@ -12,7 +12,7 @@
 !> its consistent tangent. The law alone cycles in the iteration where k exceeds the stiffness of
 !> the structure.
 module joint_contraction
-  use contraction_keyword, only: describe_contraction
+  use contraction_keyword, only: describe_contraction, stiffness_of_thickness
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
   use joint_law, only: allocate_state, is_bare, joint_state, openings_to_part, solid_behind, &
@@ -72,9 +72,9 @@ contains
       call this%fault_parameter(faults, 'TENSILE STRENGTH', 'a joint with a GAP has no strength', &
                                 'GAP or TENSILE STRENGTH, not both')
     end if
-    if (this%has('KN') .and. this%has('THICKNESS') &
-        .and. (this%has('KT') .or. self%penetration <= 0.0_rk)) then
-      call this%warn(faults, 'THICKNESS has no effect: KN is given')
+    if (this%has('THICKNESS') .and. stiffness_of_thickness(this) == '') then
+      call this%warn(faults, 'THICKNESS has no effect: '// &
+                     trim(merge('KN', 'KT', this%has('KN')))//' is given')
     end if
   end subroutine read_card
 

@@ -1,5 +1,6 @@
 !> Warns of defaults, constants and records in SI in a deck in other units (deck_units).
 module check_units
+  use contraction_keyword, only: stiffness_of_thickness
   use deck_card, only: card
   use deck_scan, only: is_keyword
   use deck_units, only: has_kilograms_per_m3, has_milliseconds, has_other_length, is_g, &
@@ -103,12 +104,15 @@ contains
     type(card), intent(in) :: this
     type(other_units), intent(in) :: units
     type(diagnostic_list), intent(inout) :: faults
-    if (units%in_metres .or. this%has('KN')) return
+    character(:), allocatable :: gives
+    gives = stiffness_of_thickness(this)
+    if (units%in_metres .or. gives == '') return
     if (.not. this%has('THICKNESS')) then
-      call this%warn(faults, 'THICKNESS, which KN comes from, is 0.02 by default'//units%why)
+      call this%warn(faults, 'THICKNESS, which '//gives//' comes from, is 0.02 by default'// &
+                     units%why)
     else if (abs(this%real('THICKNESS') - usual_thickness) <= 0.0_rk) then
-      call this%warn(faults, 'THICKNESS, which KN comes from, is '//this%text('THICKNESS')// &
-                     ', the default for metres,'//units%why)
+      call this%warn(faults, 'THICKNESS, which '//gives//' comes from, is '// &
+                     this%text('THICKNESS')//', the default for metres,'//units%why)
     end if
   end subroutine warn_of_thickness
 
