@@ -126,12 +126,14 @@ contains
       call find_support_rates(model, system, when, scheme%dt, task%support_v, task%support_a)
       call newmark_rates(scheme, old, moved, v, a)
       v = task%support_v - v
-      a = task%support_a - a
+      a = task%support_a + scheme%alpha*(task%support_a - old%a) - a
       v(:n) = 0.0_rk
       a(:n) = 0.0_rk
       call multiply(system%mass_pattern, system%mass_entries, a, force)
       task%balance%rhs = task%balance%rhs - force(:n)
       call system%find_damping_force(v, force)
+      ! K_eff, of which `moved` has taken its part, holds no modal damping.
+      call system%add_modal_force(scheme%velocity_of_x*moved, force)
       task%balance%rhs = task%balance%rhs - (1.0_rk + scheme%alpha)*force(:n)
     end associate
   end subroutine set_support_rates
@@ -199,6 +201,7 @@ contains
       new%balanced = bulk*(new%external - new%viscous - new%internal) &
                      - scheme%alpha*(old%external - old%viscous - old%internal)
     end associate
+    if (allocated(task%support_a)) call weigh_supports(system, scheme, before, after)
     call carry_correction(scheme, before%motion, after%motion)
     call add_joints(system, scheme, before, after)
   end subroutine correct
@@ -221,6 +224,21 @@ contains
       new%viscous = new%viscous + force
     end associate
   end subroutine move_supports
+
+  !> The inertia forces of supports on the free unknowns are weighted as other forces are.
+  subroutine weigh_supports(system, scheme, before, after)
+    type(dam_system), intent(in) :: system
+    type(hht), intent(in) :: scheme
+    type(state), intent(in) :: before
+    type(state), intent(inout) :: after
+    real(rk), dimension(size(after%motion%a)) :: change, force
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+      change = new%a - old%a
+      change(:n) = 0.0_rk
+      call multiply(system%mass_pattern, system%mass_entries, change, force)
+      new%balanced(:n) = new%balanced(:n) - scheme%alpha*force(:n)
+    end associate
+  end subroutine weigh_supports
 
   !> The force that corrects the work in the balance: with the implicit impulse of joints, (7.3).
   subroutine carry_correction(scheme, old, new)

@@ -1,9 +1,10 @@
 !> Modal damping: the modes of the undamaged model with closed joints have the ratio zeta each
 !> (theory.md, (5.3)):
 !>
-!>   C = sum 2 zeta w_i (M phi_i) (M phi_i)^T
+!>   C = sum 2 zeta w_i c_i c_i^T,   c_i = M phi_i on the free unknowns, K phi_i/w_i^2 on supports
 !>
-!> The supports of the step hold the modes; the force acts on the free unknowns alone.
+!> The supports of the step hold the modes. c_i^T v is the rate of mode i in the motion relative to
+!> that which follows the supports without inertia.
 module modal_damping
   use eigen_modes, only: num_massive, solve_modes
   use equilibrium_linear, only: linear_equilibrium
@@ -27,7 +28,7 @@ module modal_damping
 
 contains
 
-  !> Finds the modes and the columns sqrt(2 zeta w_i) M phi_i of the system.
+  !> Finds the modes and the columns sqrt(2 zeta w_i) c_i of the system.
   subroutine build_modal_damping(model, plan, system, costs, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -43,25 +44,30 @@ contains
     call choose_modes(plan%damping, system, closed, balance, lambda, phi, error)
     call costs%stop()
     if (allocated(error)) return
-    call set_columns(plan%damping%modal_ratio, lambda, phi, system)
+    call set_columns(plan%damping%modal_ratio, closed, lambda, phi, system)
   end subroutine build_modal_damping
 
   !> The columns of the modes.
-  subroutine set_columns(ratio, lambda, phi, system)
+  subroutine set_columns(ratio, closed, lambda, phi, system)
     real(rk), intent(in) :: ratio !< of the damping
+    real(rk), intent(in) :: closed(:) !< values of K with closed joints
     real(rk), intent(in) :: lambda(:) !< (modes) w_i squared [1/s2]
     real(rk), intent(in) :: phi(:, :) !< (free unknowns, modes)
     type(dam_system), intent(inout) :: system
-    real(rk), dimension(system%matrix%num_total) :: mode, inertia
+    real(rk), dimension(system%matrix%num_total) :: mode, inertia, elastic
     integer :: k
     deallocate (system%modal)
-    allocate (system%modal(system%matrix%num_free, size(lambda)))
+    allocate (system%modal(system%matrix%num_total, size(lambda)))
     mode = 0.0_rk
-    do k = 1, size(lambda)
-      mode(:system%matrix%num_free) = phi(:, k)
-      call multiply(system%matrix, system%mass, mode, inertia)
-      system%modal(:, k) = sqrt(2.0_rk*ratio*sqrt(lambda(k)))*inertia(:system%matrix%num_free)
-    end do
+    associate (n => system%matrix%num_free)
+      do k = 1, size(lambda)
+        mode(:n) = phi(:, k)
+        call multiply(system%matrix, system%mass, mode, inertia)
+        call multiply(system%matrix, closed, mode, elastic)
+        system%modal(:, k) = sqrt(2.0_rk*ratio*sqrt(lambda(k))) &
+                             *[inertia(:n), elastic(n + 1:)/lambda(k)]
+      end do
+    end associate
   end subroutine set_columns
 
   !> As many modes as requested, with all modes of the frequency of the last one, or all modes up to

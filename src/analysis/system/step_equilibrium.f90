@@ -178,7 +178,8 @@ contains
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: factor !< of C in K_eff [1/s]
     class(equilibrium_solver), intent(inout) :: balance
-    if (size(system%modal, 2) > 0) balance%low_rank = sqrt(factor)*system%modal
+    if (size(system%modal, 2) == 0) return
+    balance%low_rank = sqrt(factor)*system%modal(:system%matrix%num_free, :)
   end subroutine set_modal_damping
 
   !> Subtracts the forces of moving supports on the free unknowns from the right-hand side.

@@ -48,7 +48,7 @@ module step_system
     type(pattern) :: mass_pattern !< of the entries of M that are not zero
     real(rk), allocatable :: mass_entries(:) !< their values [kg]
     type(damping_sum) :: damping !< C, but for modal damping
-    !> (num_free, modes) U of modal damping: C has the term U U^T; no columns without it
+    !> (num_total, modes) U of modal damping: C has the term U U^T; no columns without it
     real(rk), allocatable :: modal(:, :)
     type(jump_operator) :: operator
     type(load_group), allocatable :: groups(:)
@@ -57,12 +57,13 @@ module step_system
     procedure :: find_damping_force, find_damping_forces, find_rate_forces
     procedure :: add_mass, add_damping
     procedure :: find_elastic, stored_energy
+    procedure :: add_modal_force
     procedure :: add_warming, set_thermal
   end type dam_system
 
 contains
 
-  !> C v; zero where nothing damps. Modal damping acts on the free unknowns alone.
+  !> C v; zero where nothing damps.
   subroutine find_damping_force(self, v, force)
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: v(:) !< (num_total)
@@ -79,7 +80,7 @@ contains
       force = force + self%damping%of_mass*product
     end if
     call self%damping%add_rest_force(v, force)
-    call add_modal_force(self, v, force)
+    call self%add_modal_force(v, force)
   end subroutine find_damping_force
 
   !> The force of the undamaged elements at q, and C a. The stiffness matrix is read once for both.
@@ -97,18 +98,18 @@ contains
     end if
     call subtract_origins(self, elastic)
     call self%damping%add_rest_force(a, viscous_rate)
-    call add_modal_force(self, a, viscous_rate)
+    call self%add_modal_force(a, viscous_rate)
   end subroutine find_rate_forces
 
   !> Adds the force of modal damping.
   subroutine add_modal_force(self, v, force)
-    type(dam_system), intent(in) :: self
+    class(dam_system), intent(in) :: self
     real(rk), intent(in) :: v(:) !< (num_total)
     real(rk), intent(inout) :: force(:) !< (num_total)
     integer :: k
     do k = 1, size(self%modal, 2)
-      associate (u => self%modal(:, k), n => size(self%modal, 1))
-        force(:n) = force(:n) + dot(u, v(:n))*u
+      associate (u => self%modal(:, k))
+        force = force + dot(u, v)*u
       end associate
     end do
   end subroutine add_modal_force
@@ -131,7 +132,9 @@ contains
     end if
     call self%damping%add_rest_forces(v, force)
     if (size(self%modal, 2) > 0) then
-      force = force + times(self%modal, transposed_times(self%modal, v))
+      associate (u => self%modal(:size(v, 1), :))
+        force = force + times(u, transposed_times(u, v))
+      end associate
     end if
   end subroutine find_damping_forces
 
@@ -234,7 +237,7 @@ contains
     call add_guest_matrices(guests, stiffness_matrix, model, system%numbers, system%matrix, &
                             system%stiffness, costs)
     allocate (system%mass(0), system%diagonal(system%matrix%num_total))
-    allocate (system%modal(system%matrix%num_free, 0))
+    allocate (system%modal(system%matrix%num_total, 0))
     call diagonal(system%matrix, system%stiffness, system%diagonal)
     call costs%stop('assemble structure')
   end subroutine build_structure

@@ -101,7 +101,9 @@ contains
                    'this step on: Rayleigh damping by one ratio at two frequencies, or with '// &
                    'MODAL one ratio for each of the lowest modes of the undamaged model with '// &
                    'closed joints and for nothing else. Both kinds may act together; RATIO=0 '// &
-                   'ends one.'
+                   'ends one. Where *BOUNDARY moves the supports, the part of Rayleigh damping '// &
+                   'that is proportional to the mass damps absolute velocities, those of a '// &
+                   'rigid motion too; with *BASE MOTION velocities are relative to the base.'
     spec%example = '*DAMPING, RATIO=0.05, F1=2., F2=10.'//new_line('a')// &
                    '*DAMPING, MODAL, RATIO=0.05, MODES=20'
     spec%most_lines = 0
