@@ -201,6 +201,7 @@ def test_reads_150_000_nodes_in_two_seconds(program_path: Path, tmp_path: Path) 
         (["-q"], 2, "stderr", "no deck is named"),
         (["-j", "many", "a.inp"], 2, "stderr", "expected a number of threads from 1 to 256"),
         (["-o"], 2, "stderr", "-o needs a value"),
+        (["-o", "", "job.inp"], 2, "stderr", "-o needs a value"),
         (["nowhere.inp"], 2, "stderr", "cannot read 'nowhere.inp'"),
     ],
 )

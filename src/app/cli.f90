@@ -170,7 +170,7 @@ contains
     integer, intent(inout) :: i
     type(command_line), intent(inout) :: given
     type(error_type), allocatable, intent(out) :: error
-    if (i > command_argument_count()) then
+    if (i > command_argument_count() .or. (argument(i) == '' .and. word /= '--umat-flags')) then
       call raise(error, 'keyway: '//word//' needs a value'//nl//usage(), deck_is_wrong)
       return
     end if

@@ -22,9 +22,11 @@ module stress_polynomials
     real(rk) :: origin(3) = 0.0_rk, length = 1.0_rk !< of the coordinates of its terms [m]
     real(rk) :: normal(quadratic_terms, quadratic_terms) = 0.0_rk
     real(rk) :: found(quadratic_terms, 6) = 0.0_rk !< sums of stresses; then coefficients [Pa]
+    integer :: num_points = 0
+    real(rk), allocatable :: points(:, :) !< (terms, num_points or more) terms at the points
   contains
-    procedure :: add_solid, solve, value_at
-    procedure, private :: terms_at
+    procedure :: add_solid, solve, value_at, growth_at
+    procedure, private :: terms_at, ridged, keep_point
   end type stress_polynomial
 
 contains
@@ -62,6 +64,7 @@ contains
     n = self%num_terms
     do q = 1, num_points
       own = self%terms_at(x(:, q))
+      call self%keep_point(own)
       do k = 1, n
         self%normal(:n, k) = self%normal(:n, k) + own(:n)*own(k)
       end do
@@ -71,26 +74,61 @@ contains
     end do
   end subroutine add_solid
 
+  !> Keeps the terms at a point.
+  pure subroutine keep_point(self, own)
+    class(stress_polynomial), intent(inout) :: self
+    real(rk), intent(in) :: own(:) !< (terms)
+    real(rk) :: more(quadratic_terms, 2*self%num_points + max_points)
+    if (.not. allocated(self%points)) allocate (self%points(quadratic_terms, 0))
+    if (self%num_points == size(self%points, 2)) then
+      more(:, :self%num_points) = self%points
+      self%points = more
+    end if
+    self%num_points = self%num_points + 1
+    self%points(:, self%num_points) = own
+  end subroutine keep_point
+
   !> Finds the coefficients; the mean alone where the points do not determine them.
   subroutine solve(self)
     class(stress_polynomial), intent(inout) :: self
-    real(rk) :: ridged(self%num_terms, self%num_terms), sums(self%num_terms, 6)
-    real(rk) :: coefficients(self%num_terms, 6)
+    real(rk) :: sums(self%num_terms, 6), coefficients(self%num_terms, 6)
     logical :: is_singular
-    integer :: k, n
+    integer :: n
     n = self%num_terms
-    ridged = self%normal(:n, :n)
     sums = self%found(:n, :)
-    do k = 2, n
-      ridged(k, k) = ridged(k, k) + share*self%normal(1, 1)
-    end do
-    call solve_dense(ridged, sums, coefficients, is_singular)
+    call solve_dense(self%ridged(), sums, coefficients, is_singular)
     if (is_singular) then
       coefficients = 0.0_rk
       coefficients(1, :) = sums(1, :)/self%normal(1, 1)
     end if
     self%found(:n, :) = coefficients
   end subroutine solve
+
+  !> The matrix of the normal equations.
+  pure function ridged(self) result(matrix)
+    class(stress_polynomial), intent(in) :: self
+    real(rk) :: matrix(self%num_terms, self%num_terms)
+    integer :: k
+    matrix = self%normal(:self%num_terms, :self%num_terms)
+    do k = 2, self%num_terms
+      matrix(k, k) = matrix(k, k) + share*self%normal(1, 1)
+    end do
+  end function ridged
+
+  !> How much differences of the stresses from the fit grow at a place: the norm of the weights that
+  !> the stresses have in its value there.
+  real(rk) function growth_at(self, x) result(growth)
+    class(stress_polynomial), intent(in) :: self
+    real(rk), intent(in) :: x(3) !< [m]
+    real(rk) :: own(quadratic_terms), way(self%num_terms, 1)
+    logical :: is_singular
+    integer :: n
+    n = self%num_terms
+    own = self%terms_at(x)
+    call solve_dense(self%ridged(), reshape(own(:n), [n, 1]), way, is_singular)
+    growth = huge(1.0_rk)
+    if (.not. is_singular) growth = norm2(matmul(way(:, 1), self%points(:n, :self%num_points)))
+  end function growth_at
 
   !> The stress of the fit at a place, once it is solved.
   pure function value_at(self, x) result(stress)
