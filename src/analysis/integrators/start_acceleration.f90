@@ -93,7 +93,7 @@ contains
   end function is_final
 
   !> Whether the forces balance as well as an increment of the step must balance them: what is left
-  !> is the residual of the step before, and not worth a factor. The first increment makes up for it.
+  !> is the residual of the step before, and not worth a factor. The first increment balances it.
   !> Without loads massless parts that nothing holds would not be found.
   logical function is_balanced(num_free, plan, now, r)
     integer, intent(in) :: num_free

@@ -22,8 +22,8 @@ module place_errors
   real(rk), parameter :: not_known = -1.0_rk, left_elasticity = -2.0_rk, bounded_by_law = -3.0_rk
 
   !> The means of one curved layer of elements lie nearly in a plane and do not determine a stress
-  !> across the layer: a fit that makes differences grow by more is not used. Fits of bricks that lie
-  !> two or three deep, and of slices, have 0.2 to 2.6, layers of arches 100 to 900.
+  !> across the layer: a fit that makes differences grow by more is not used. Fits of bricks in
+  !> several layers, and of slices, have 0.2 to 2.6, single layers of arches 100 to 900.
   real(rk), parameter :: largest_growth = 5.0_rk
 
 contains
