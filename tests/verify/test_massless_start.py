@@ -104,8 +104,8 @@ def test_static_start_is_at_rest(keyway):
 @pytest.mark.parametrize(("change", "starts_at_rest"), [(1e-5, False), (1e-7, True)])
 def test_change_of_the_loads_at_the_start(keyway, change, starts_at_rest):
     """A weight that changes by less than *CONTROLS, RESIDUAL (1e-6) starts from rest. The first
-    increment balances the change all the same: (1 + x) a_1 = a - x a_0 by the trapezoidal rule, with
-    x = w^2 dt^2/4, and a_0 = a or 0."""
+    increment balances the change all the same: (1 + x) a_1 = a - x a_0 by the trapezoidal rule,
+    with x = w^2 dt^2/4, and a_0 = a or 0."""
     weight = f"*STEP\n*STATIC\n*DLOAD\nBLOCK, GRAV, {GRAVITY!r}, 0., 0., -1.\n*END STEP\n"
     steps = weight + sudden_weight(0.0, (1 + change) * GRAVITY)
     a3 = keyway(column_deck((2, 3), steps)).csv("node_BOTTOM")["A3"]
