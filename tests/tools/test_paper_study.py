@@ -17,11 +17,13 @@ from keyway_tools.paper_study.cases import Case, choose
 from keyway_tools.paper_study.checks import coupling_verdicts
 from keyway_tools.paper_study.facts import Facts
 from keyway_tools.paper_study.openings import by_height
-from keyway_tools.paper_study.runner import Study
+from keyway_tools.paper_study.page import write_page
+from keyway_tools.paper_study.runner import Outcome, Study
 from keyway_tools.paper_study.sizes import SIZES
 from keyway_tools.paper_study.verdicts import dam_verdicts, differences, joint_verdicts, robust
 
 TOOL = Path(__file__).resolve().parents[2] / "tools" / "paper_study.py"
+CLOSED = {"upstream": 0.0, "downstream": 0.0}
 PAIR = ["xingbiling_classical", "xingbiling_chain"]
 
 
@@ -51,10 +53,19 @@ def test_stopped_study_goes_on_and_writes_its_page(tmp_path, program_path):
     assert done.returncode == 0, done.stderr
     assert "xingbiling_classical: finished (kept)" in done.stdout
     page = (tmp_path / "paper_study.html").read_text()
-    for words in ("the paper's chain", "Fig. 10", "data:image/png;base64", "6.5 %", "No case has"):
+    for words in (
+        "the paper's chain",
+        "Fig. 10",
+        "data:image/png;base64",
+        "6.5 %",
+        "No joint opens",
+    ):
         assert words.replace("'", "&#39;") in page or words in page
     assert "src=" not in page.replace('src="data:', "")  # needs no other file
+    assert "No case of Jinping has finished." in page
+    assert "opening, downstream face differs" not in page  # of 1e-18 m
     data = json.loads((tmp_path / "paper_study.json").read_text())
+    assert [case["openings"]["JOINT1"] for case in data["cases"]] == 2 * [CLOSED]
     assert [case["status"] for case in data["cases"]] == ["finished", "finished"]
     assert all(case["unknowns"] > 0 for case in data["cases"])
     other = study(tmp_path, program_path)
@@ -144,6 +155,28 @@ def test_findings_that_do_not_come_out_are_said():
     kept = robust(made_up("base"), [made_up("other", damaged=lower)])
     assert [one.kind for one in kept].count("fair") == 1
     assert "not with other" in next(one.text for one in kept if one.kind == "fair")
+
+
+def test_joints_that_stay_closed_are_said_to():
+    closed = made_up("a", openings={f"JOINT{k}": CLOSED for k in range(1, 7)})
+    said = [one.text for one in dam_verdicts(closed) if "oint" in one.text and "open" in one.text]
+    assert said == ["No joint opens; in the paper joint 1 opens most."]
+    (outer,) = [one for one in robust(closed, []) if one.text.startswith("An outer joint")]
+    assert outer.text.endswith("not so in the base itself.")
+
+
+def test_parts_without_their_cases_say_what_they_need(tmp_path):
+    """What is true whichever of the cases have finished."""
+    base = choose(list_cases(SIZES["tiny"]), ["s_base"])
+    record = SimpleNamespace(status="stopped", wall_s=None, processor_s=None, message="")
+    page = write_page(tmp_path, [], [Outcome(base[0], record)], []).read_text()
+    assert " not run" not in page
+    for words in (
+        "the classical joint and at least one other joint model have finished",
+        "at least two records have finished",
+        "the base and at least one variant have finished",
+    ):
+        assert words in page
 
 
 def test_differences_stand_beside_those_of_the_paper():

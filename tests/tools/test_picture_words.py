@@ -2,6 +2,7 @@
 
 import h5py
 import numpy as np
+import pytest
 from keyway_tools import pictures_curves
 from keyway_tools.colour_scale import Scales
 from keyway_tools.picture_style import Sheet, headline, new_figure, plt
@@ -38,6 +39,20 @@ def test_titles_fit_their_figure(tmp_path):
     assert title.get_window_extent().width <= figure.bbox.width
     assert title.get_text().replace("\n", " ").split()[-1] == "x" * 150
     assert figure.get_figheight() > height
+    plt.close(figure)
+
+
+@pytest.mark.parametrize("height", [3.0, 30.0])  # [inches]
+def test_the_note_lies_below_the_axes(tmp_path, monkeypatch, height):
+    kept = []
+    monkeypatch.setattr(plt, "close", kept.append)
+    figure, axis = new_figure(row_height=height)
+    axis.set_xlabel("along [m]" + 60 * " ")
+    Sheet(tmp_path / "tall", note="deck.inp · date · Keyway").save(figure)
+    monkeypatch.undo()
+    (note,) = figure.texts
+    assert note.get_window_extent().y1 < axis.xaxis.label.get_window_extent().y0
+    assert note.get_window_extent().y0 > 0.0
     plt.close(figure)
 
 

@@ -14,12 +14,18 @@ from keyway.commands import plot
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.box_mesh import box_mesh, stretched
-from keyway_tools.colour_scale import Scales, parse_ranges
+from keyway_tools.colour_scale import FIELDS, Scales, parse_ranges
 from keyway_tools.dam_views import Faces
-from keyway_tools.picture_style import Sheet, new_figure
+from keyway_tools.picture_style import COLOURS, GREY, Sheet, new_figure, plt
 from keyway_tools.pictures_damage import worst_element
-from keyway_tools.pictures_faces import plot_envelope
-from keyway_tools.pictures_joints import JointView, last_slips, plot_joint_slips, ranges_of
+from keyway_tools.pictures_faces import _marks, plot_envelope, plot_face_openings
+from keyway_tools.pictures_joints import (
+    JointView,
+    last_slips,
+    plot_joint_areas,
+    plot_joint_slips,
+    ranges_of,
+)
 from keyway_tools.pictures_material import Curve, _damage_panel
 from keyway_tools.pictures_shapes import masses_in_words
 from keyway_tools.results import Results, find_jobs
@@ -208,6 +214,10 @@ def test_cracks_without_damage_are_not_called_undamaged(dam_results):
     results.summary["damage"] = {"dissipated": {"cracking": 5.0, "crushing": 0.0}}
     assert worst_element(faces, damage, "DAMAGET").startswith("0, though solids have cracked")
     assert worst_element(faces, damage, "DAMAGEC") == "no damage"
+    damage[faces.elements[-1]] = 0.131
+    faces.elements = faces.elements[:-1]  # a part of the dam
+    text = "no damage in the part that is drawn, elsewhere up to 0.131"
+    assert worst_element(faces, damage, "DAMAGET") == text
 
 
 @pytest.mark.parametrize("kind", ["mp4", "gif"])
@@ -287,6 +297,22 @@ def test_words_of_the_damage_panel_lie_over_no_curve():
     figure.canvas.draw()
     top = axis.transData.transform((0.0, 1.0))[1]
     assert axis.get_legend().get_window_extent().y0 > top
+    plt.close(figure)
+
+
+def test_words_of_the_damage_panel_have_the_colour_of_their_curve():
+    """Grey stands for the colours of several curves."""
+    share = np.linspace(0.0, 1.0, 6)
+    one = Curve("A", {"E11": share, "DAMAGET": share}, "11")
+    both = Curve("B", {"E11": share, "DAMAGET": share, "DAMAGEC": share}, "11")
+    for curves, wanted in (
+        ([one], [COLOURS[0]]),
+        ([one, both], [GREY, COLOURS[1]]),
+    ):
+        figure, axis = new_figure(1, 4.0, 3.0)
+        _damage_panel(axis, curves)
+        assert [line.get_color() for line in axis.get_legend().get_lines()] == wanted
+        plt.close(figure)
 
 
 def test_material_file_that_is_no_curve_is_refused(tmp_path, capsys):
@@ -322,3 +348,21 @@ def test_round_off_is_no_slip(tmp_path, dam_results):
                     joint["slip"][:] *= size / 0.03
         sheet = Sheet(folder / "slip")
         assert len(plot_joint_slips(SiResults(folder), Scales(), sheet)) == count
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_round_off_is_no_opening(tmp_path, dam_results, factor):
+    """Openings of 1e-18 m have no picture; beside larger ones on the other face, no mark."""
+    shutil.copytree(dam_results, tmp_path / "run", ignore=shutil.ignore_patterns("*.png"))
+    with h5py.File(tmp_path / "run" / "job.h5", "r+") as file:
+        opening = file["steps/0001/envelopes/OPENING_MAX"]
+        is_down = file["faces/downstream"][:] > 0
+        opening[:] = np.where(is_down, factor * opening[:], 0.0) + 1e-18
+    results = SiResults(tmp_path / "run")
+    faces, step = Faces(results), results.steps()[0]
+    marks = _marks(faces, 1e3 * step.envelopes["OPENING"], FIELDS["OPENING"])
+    assert list(marks) == (["Downstream face"] if factor else [])
+    sheet = Sheet(tmp_path / "opening")
+    if not factor:
+        assert plot_face_openings(faces, step, Scales(), sheet) == []
+        assert plot_joint_areas(results, step, Scales(), sheet) == []

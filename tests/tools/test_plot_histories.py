@@ -1,6 +1,7 @@
 """Pictures of histories: which curves are drawn, their names, and their gaps."""
 
 import json
+from types import SimpleNamespace
 
 import h5py
 import matplotlib
@@ -199,6 +200,9 @@ def test_few_increments_are_drawn(folder, num_times):
     assert "TOP, node 1" in words_of(plot_nodes, results, folder)
     assert ">external</text>" in words_of(plot_energy, results, folder)
     assert "cracking" in words_of(plot_damage_growth, results, folder)
+    figure = plot_nodes(results, SimpleNamespace(save=lambda figure: figure))
+    one_time = list(figure.axes[-1].get_xticks()) == [results.table("node_TOP")["time"][0]]
+    assert one_time == (num_times == 1)
     titles = {plot["title"] for plot in plots(results)}
     assert titles >= {"Energies", "Damaged volume", "Displacements of TOP, relative to the base"}
 

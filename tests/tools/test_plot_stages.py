@@ -91,22 +91,40 @@ def test_stages_show_grouted_joints(staged):
     assert orange.sum() > 50
 
 
-def test_joints_are_grouted_in_the_step_of_their_grout(staged):
-    """Grout hardens at the end of its step, and job.h5 shows it in the next one: step 2 of three
-    has a panel, not the water of step 3 after it. Modes between them are no step of that kind."""
-    with h5py.File(staged / "job.h5", "a") as file:
+def write_grouting(folder, log):
+    """Three steps: the points of all joints wait, wait, are bonded; modes between the last two."""
+    with h5py.File(folder / "job.h5", "a") as file:
         del file["steps/0001/stage"]
         file.move("steps/0002", "steps/0003")
         del file["steps/0003/stage"]
-        for key, grouted in (("0002", 1), ("0004", 2)):
+        names = list(file["joints"])
+        for key in ("0002", "0004"):
             file.copy("steps/0001", f"steps/{key}")
+        for key, grouted in (("0001", 1), ("0002", 1), ("0004", 2)):
             for group in file[f"steps/{key}/increments"].values():
                 for joint in group["joints"].values():
                     joint["grouted"][:] = grouted
-        for group in file["steps/0001/increments"].values():
-            for joint in group["joints"].values():
-                joint["grouted"][:] = 1
-    assert changing_steps(SiResults(staged, "job")) == [1, 2]
+    cards = [log.format(joint=name.lower()) for name in names]
+    steps = ["", "\n".join(cards), "", ""]
+    echo = "".join(f"*STEP, NAME=S{k}\n{text}\n*END STEP\n" for k, text in enumerate(steps, 1))
+    (folder / "job.log").write_text(f"*HEADING\n{echo}step 1  increment 1  time 1\n")
+    return SiResults(folder, "job")
+
+
+PRESSED = ["*GROUT, JOINT={joint}, PRESSURE=3e5", "*GROUT, JOINT={joint},\n  PRESSURE=3e5"]
+
+
+@pytest.mark.parametrize("card", PRESSED)
+def test_grout_with_pressure_hardens_at_the_end_of_its_step(staged, card):
+    """job.h5 shows it in the step after it: the step of the grout has a panel, not the next."""
+    assert changing_steps(write_grouting(staged, card)) == [1, 2]
+
+
+def test_grout_without_pressure_is_not_shown_before_its_step(staged):
+    """job.h5 shows it in its own step: the step before has no panel."""
+    assert changing_steps(write_grouting(staged, "*GROUT, JOINT={joint}, PRESSURE=0")) == [1, 4]
+    (staged / "job.log").unlink()
+    assert changing_steps(SiResults(staged, "job")) == [1, 4]
 
 
 def test_joints_that_open_before_their_grout_do_not_hide_the_motion(staged):

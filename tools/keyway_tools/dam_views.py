@@ -80,7 +80,12 @@ class Faces:
     ) -> pv.PolyData | None:
         """Lines where the joints meet the faces; given values of all nodes become 'value'."""
         x = self.results.x if shift is None else self.results.x + shift
-        parts = []
+        parts = [border_of(facets, x, values) for facets in self.joint_facets().values()]
+        return pv.merge(parts) if parts else None
+
+    def joint_facets(self) -> dict[str, np.ndarray]:
+        """Facets (rows of four nodes) of each joint that are there; no joints without any."""
+        found = {}
         # interface quads have nodes that no solid has: they are there as the joint is
         absent = np.setdiff1d(self.results.connectivity[self.results.solids], self.nodes)
         for name in self.results.joint_names():
@@ -88,19 +93,24 @@ class Faces:
             facets = joint.facets if joint is not None else np.empty((0, 4), dtype=int)
             facets = facets[~np.isin(facets, absent).any(axis=1)]
             if len(facets):
-                parts.append(border_of(facets, x, values))
-        return pv.merge(parts) if parts else None
+                found[name] = facets
+        return found
 
 
 def border_of(facets: np.ndarray, x: np.ndarray, values: np.ndarray | None = None) -> pv.PolyData:
     """The lines around facets (rows of four nodes); given values of all nodes become 'value'."""
+    return surface_of(facets, x, values).extract_feature_edges(feature_edges=False)
+
+
+def surface_of(facets: np.ndarray, x: np.ndarray, values: np.ndarray | None = None) -> pv.PolyData:
+    """Facets (rows of four nodes); given values of all nodes become 'value'."""
     nodes, place = np.unique(facets, return_inverse=True)
     place = place.reshape(facets.shape)
     faces = np.hstack([np.full((len(place), 1), 4), place])
     part = pv.PolyData(x[nodes].astype(float), faces.ravel())
     if values is not None:
         part["value"] = values[nodes]
-    return part.extract_feature_edges(feature_edges=False)
+    return part
 
 
 def _views(results: SiResults, nodes: np.ndarray) -> dict[str, View]:

@@ -46,6 +46,7 @@ _STYLE = {
 FORMATS = ("png", "svg", "pdf")
 WIDEST_TITLE = 0.98  # over the width of the figure
 LINE = 0.27  # [inches] of a title
+STRIP, NOTE_UP = 0.3, 0.05  # [inches] height of the strip for the note, the note over its foot
 # No date of drawing in a file: the same data give the same bytes.
 _UNDATED = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
@@ -61,9 +62,10 @@ class Sheet:
     def save(self, figure) -> list[Path]:
         """Write and close a figure; returns the files."""
         if self.note:
-            strip = 0.3 / figure.get_figheight()  # 0.3 inches for the note
+            strip = STRIP / figure.get_figheight()
             figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
-            figure.text(0.995, 0.008, self.note, ha="right", va="bottom", color=GREY, fontsize=11)
+            place = (0.995, NOTE_UP / figure.get_figheight())
+            figure.text(*place, self.note, ha="right", va="bottom", color=GREY, fontsize=11)
         files = [self.path.with_name(f"{self.path.name}.{kind}") for kind in self.formats]
         for file, kind in zip(files, self.formats, strict=True):
             figure.savefig(file, metadata=_UNDATED[kind])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,9 +33,26 @@ def _look(number: int) -> dict[str, str]:
     return {"color": COLOURS[place], "ls": lines[times % len(lines)]}
 
 
-def _mark(count: int) -> str:
+def mark_of(count: int) -> str:
     """The mark at the points of a curve: one of one point would not be seen."""
     return "o" if count < FEW_POINTS else ""
+
+
+def mark_one_time(axes: Iterable[Axes]) -> None:
+    """Panels above each other that have one time: only this stands at their axis.
+
+    A scale around it would look like a history that is empty.
+    """
+    axes = list(axes)
+    times = {
+        float(time)
+        for axis in axes
+        for line in axis.lines
+        if line.get_transform() is axis.transData  # not a line across the panel
+        for time in line.get_xdata()
+    }
+    if len(times) == 1:
+        axes[-1].set_xticks(list(times))
 
 
 def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
@@ -46,6 +64,8 @@ def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
     names = [name for name in results.tables() if name.startswith("joint_")]
     tables = {name.removeprefix("joint_"): results.table(name) for name in names}
     tables = {name: table for name, table in tables.items() if len(table.get("opening", ()))}
+    for table in tables.values():
+        table["opening"] = results.without_round_off(table["opening"])
     if not tables:
         return []
     columns = _columns(results, list(tables.values()))
@@ -62,6 +82,8 @@ def plot_openings(results: SiResults, sheet: Sheet) -> list[Path]:
         row[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     for axis, kind in zip(axes[-1], columns, strict=True):
         axis.set_xlabel("time of the deck" if kind == STATIC else "time [s]")
+    for column in axes.T:
+        mark_one_time(column)
     return sheet.save(figure)
 
 
@@ -113,7 +135,7 @@ def _opening_panel(axis, table: dict[str, np.ndarray], span: Span) -> None:
         x, y, z = (table[axis_name][rows[0]] for axis_name in "xyz")
         label = f"point {point} ({x:.1f}, {y:.1f}, {z:.1f}) m"
         time, opening = span.curve(table, rows, 1000.0 * table["opening"])
-        axis.plot(time, opening, lw=1.0, marker=_mark(len(time)), label=label)
+        axis.plot(time, opening, lw=1.0, marker=mark_of(len(time)), label=label)
     axis.axhline(0.0, color=GREY, lw=0.8)
     axis.margins(x=0.0)
 
@@ -191,6 +213,7 @@ def plot_nodes(results: SiResults, sheet: Sheet) -> list[Path]:
         _node_panels(dict(zip(shown, column, strict=True)), curves, Span(results, steps), largest)
         column[0].set_title(f"Displacements relative to the base{', ' if kind else ''}{kind}")
         column[-1].set_xlabel("time of the deck" if kind == STATIC else "time [s]")
+        mark_one_time(column)
     for axis, direction in zip(axes[:, 0], shown, strict=True):
         axis.set_ylabel(f"U{direction} [mm]")
     if len(shown) < len(DIRECTIONS):
@@ -215,8 +238,8 @@ def _node_panels(
         for direction, axis in panels.items():
             time, moved = span.curve(one.table, one.rows, 1000.0 * one.table[f"U{direction}"])
             axis.plot(
-                time, moved, lw=1.0, marker=_mark(len(time)), label=f"{one.name}, node {one.node}",
-                **_look(number),
+                time, moved, lw=1.0, marker=mark_of(len(time)),
+                label=f"{one.name}, node {one.node}", **_look(number),
             )  # fmt: skip
     for axis in panels.values():
         axis.margins(x=0.0)
@@ -232,7 +255,7 @@ def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
     largest = max(energies.values(), default=0.0)
     if not largest > 0.0:
         return []
-    mark = _mark(len(table["time"]))
+    mark = mark_of(len(table["time"]))
     scale, unit = (1e-6, "MJ") if largest > 1e5 else (1e-3, "kJ") if largest > 1e2 else (1.0, "J")
     figure, axes = new_figure(
         2, width=12.0, row_height=2.9, sharex=True, gridspec_kw={"height_ratios": (3, 1)}
@@ -254,6 +277,7 @@ def plot_energy(results: SiResults, sheet: Sheet) -> list[Path]:
     axes[1].set_ylabel("imbalance [%]")
     axes[1].set_xlabel("time [s]")
     axes[1].margins(x=0.0)
+    mark_one_time(axes)
     figure.align_ylabels()
     return sheet.save(figure)
 
@@ -263,7 +287,7 @@ def plot_damage_growth(results: SiResults, sheet: Sheet) -> list[Path]:
     table = results.history("damage")
     if _largest(table.get("inelastic_volume", np.zeros(0))) <= 0.0:
         return []
-    mark = _mark(len(table["time"]))
+    mark = mark_of(len(table["time"]))
     figure, axes = new_figure(2, width=12.0, row_height=2.9, sharex=True)
     volume = table["inelastic_volume"]
     axes[0].plot(table["time"], volume, color=GREY, marker=mark, label="beyond elasticity")
@@ -282,5 +306,6 @@ def plot_damage_growth(results: SiResults, sheet: Sheet) -> list[Path]:
     for axis in axes:
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         axis.margins(x=0.0)
+    mark_one_time(axes)
     figure.align_ylabels()
     return sheet.save(figure)

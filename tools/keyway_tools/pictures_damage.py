@@ -42,11 +42,14 @@ def plot_mean_envelope(
 
 
 def worst_element(faces: Faces, damage: np.ndarray, name: str) -> str:
-    """The most damaged element of the dam in words. Concrete may crack without a damage variable:
-    then the law keeps its stiffness."""
+    """The most damaged element of the drawn part in words. Concrete may crack without a damage
+    variable: then the law keeps its stiffness."""
     results = faces.results
     worst = faces.elements[damage[faces.elements].argmax()]
     if damage[worst] <= 0.0:
+        elsewhere = float(np.nanmax(damage, initial=0.0))
+        if elsewhere > 0.0:
+            return f"no damage in the part that is drawn, elsewhere up to {elsewhere:.3g}"
         what, kind, verb = DISSIPATED[name]
         summary = results.summary if results.path(".json").exists() else {}
         energy = summary.get("damage", {}).get("dissipated", {}).get(what, 0.0)

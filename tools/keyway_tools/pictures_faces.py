@@ -38,6 +38,7 @@ class Drawing:
     label: str
     heading: str
     marks: dict[str, Mark] = field(default_factory=dict)
+    sides: tuple[str, ...] = ()  # what lies to the left and to the right of each image
 
 
 def place_of(x: np.ndarray, size: float) -> str:
@@ -123,6 +124,8 @@ def draw_page(drawing: Drawing):
         axis.imshow(picture.image, extent=picture.extent, interpolation="antialiased")
         hide_frame(axis)
         axis.set_title(title)
+        for at, text, end in zip((-0.02, 1.02), drawing.sides, ("right", "left"), strict=False):
+            axis.text(at, 0.5, text, ha=end, va="center", color=GREY, transform=axis.transAxes)
         _scale_bar(axis, picture.extent)
         if title in drawing.marks:
             _draw_mark(axis, drawing.marks[title], picture.extent)

@@ -26,7 +26,6 @@ STATES = {
 }  # fmt: skip
 SHOWN_IN_PLAN = 0.3  # of the area
 WIDEST = 13.0  # [inches]
-ROUND_OFF = 1e-10  # of the size of the model: no slip; displacements are solved to some 1e-12 of it
 STATE_COLOURS = ("#B5B5B5", "#EEEEEE", "#FFFFFF", "#D55E00", "#C9DAE6", "#E69F00", "#0072B2")
 
 
@@ -193,6 +192,7 @@ def last_slips(results: SiResults) -> tuple[dict[str, np.ndarray], float]:
     slips = {}
     for name, joint in joints.items():
         size = results.units.length * np.linalg.norm(group[name]["slip"][:], axis=1)
+        size = results.without_round_off(size)
         slips[name] = size[_point_of_corner(results, name, joint)]
     return slips, time
 
@@ -201,7 +201,7 @@ def plot_joint_slips(results: SiResults, scales: Scales, sheet: Sheet) -> list[P
     """Irrecoverable sliding of every joint at the last saved time."""
     slips, time = last_slips(results)
     everything = np.concatenate([np.zeros(1), *slips.values()])
-    if everything.max() <= ROUND_OFF * float(np.ptp(results.x, axis=0).max()):
+    if not everything.any():
         return []
     page = JointPage(results, joints_with_faces(results))
     borders = scales.limits("SLIP", everything).borders

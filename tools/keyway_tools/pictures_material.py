@@ -124,8 +124,9 @@ def _damage_panel(axis, curves: list[Curve]) -> None:
             if curve.has(column):
                 axis.plot(curve.strain, curve.table[column], style, color=colour)
     for column, style, label in lines:
-        if any(c.has(column) for c in curves):
-            axis.plot([], [], style, color=GREY, label=label)
+        own = [colour for c, colour in zip(curves, _colours(curves), strict=True) if c.has(column)]
+        if own:  # grey stands for all colours
+            axis.plot([], [], style, color=own[0] if len(own) == 1 else GREY, label=label)
     axis.set_title("Damage")
     axis.set_xlabel("strain [1e-3]")
     axis.set_ylim(-0.02, 1.3)  # the words have room above 1

@@ -8,12 +8,14 @@ import numpy as np
 import pyvista as pv
 
 from .colour_scale import FIELDS, Scales
-from .dam_views import Faces
+from .dam_views import Faces, surface_of
 from .picture_style import Sheet
 from .pictures_faces import Drawing, Mark, compose, place_of
 from .render_dam import Paint, View, render
 from .results import Step
-from .upright import horizontal
+from .upright import axes_with_up_last, horizontal
+
+SIDES = ("upstream", "downstream")  # to the left and to the right of a section
 
 
 def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: Sheet) -> list[Path]:
@@ -34,13 +36,45 @@ def plot_section(faces: Faces, step: Step, name: str, scales: Scales, sheet: She
         return []
     limits = scales.limits(name, values[faces.nodes])
     paint = Paint(cut.point_data["value"], limits.ends, shown.colours, limits.bands)
-    picture = render(cut, view, paint)
+    joints = _joints_on(faces, cut, view)
+    lines = pv.merge(list(joints.values())) if joints else None
+    picture = render(cut, view, paint, lines)
     number = shown.with_unit(shown.scale * values[place])
-    heading = f"{shown.label}: section from face to face\nextreme {number} at "
+    heading = f"{shown.label}: upright section\n"
+    heading += f"{_plane_in_words(faces, cut, view, place)}\nextreme {number} at "
     heading += f"{place_of(faces.results.x[place], faces.size)}, step {step.name}"
+    if joints:
+        heading += f"\nblack: {', '.join(joints)}, between blocks with stresses of their own"
     marks = {"": Mark(view.project(faces.results.x[place]), number)}
     label = f"{shown.label.lower()} [{shown.unit}]"
-    return compose(Drawing({"": picture}, limits, shown.colours, label, heading, marks), sheet)
+    drawing = Drawing({"": picture}, limits, shown.colours, label, heading, marks, SIDES)
+    return compose(drawing, sheet)
+
+
+def _plane_in_words(faces: Faces, cut: pv.PolyData, view: View, place: int) -> str:
+    """Where the section begins, upstream, and ends in plan."""
+    x, size = faces.results.x[place], faces.size
+    first, second, _ = axes_with_up_last(faces.results.up_axis)
+    along = cut.points @ view.right
+    ends = (x + (end - x @ view.right) * view.right for end in (along.min(), along.max()))
+    words = [place_of(end[[first, second]], size) for end in ends]
+    axes = f"({'xyz'[first]}, {'xyz'[second]})"
+    return f"from {axes} = {words[0].removesuffix(' m')} to {words[1]}, face to face"
+
+
+def _joints_on(faces: Faces, cut: pv.PolyData, view: View) -> dict[str, pv.PolyData]:
+    """The lines in which joints meet the section."""
+    found, along = {}, cut.points @ view.right
+    for name, facets in faces.joint_facets().items():
+        plane = {"normal": view.towards, "origin": cut.points[0]}
+        line = surface_of(facets, faces.results.x).slice(**plane)
+        if line.n_cells:
+            at = line.cell_centers().points @ view.right
+            line = line.extract_cells((at > along.min()) & (at < along.max()))
+            line = line.extract_surface(algorithm="dataset_surface")
+        if line.n_cells:
+            found[name] = line
+    return found
 
 
 def _cut(body: pv.UnstructuredGrid, view: View, x: np.ndarray, size: float) -> pv.PolyData | None:

@@ -26,7 +26,8 @@ def largest_state(results: SiResults, nodes: np.ndarray) -> tuple[str, float] | 
     for name in results.joint_names():
         table = results.history(f"joints/{name}")
         if len(table.get("time", ())):
-            opening = np.maximum(opening, np.interp(times, table["time"], table["opening"]))
+            opened = results.without_round_off(table["opening"])
+            opening = np.maximum(opening, np.interp(times, table["time"], opened))
     if opening.max() > 0.0:
         return saved[int(opening.argmax())]
     size = [np.linalg.norm(results.displacement(p)[nodes], axis=1).max() for p, _ in saved]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from textwrap import fill
 
@@ -21,6 +22,7 @@ COLUMNS = 4
 COLOURS = "YlGnBu"
 BAR = 0.9  # [inches] of the colour bar below the panels, with its label
 TITLE_LETTERS = 38  # of a line above a panel
+GROUT = re.compile(r"^\*GROUT, JOINT=(.*?),\s+PRESSURE=(\S+)$", re.M)  # as the log writes it
 OPEN, GROUTED = (20, 20, 20), (213, 94, 0)  # lines of joints, red green blue
 
 
@@ -102,27 +104,33 @@ def _states(results: Results, step: int) -> dict[str, np.ndarray | None]:
 def _grouted_points(results: Results, step: int) -> dict[str, np.ndarray | None]:
     """1 for the points of each joint that are grouted at the end of a step, 0 for the others.
 
-    Grout hardens at the end of its step, and job.h5 shows it in the next one: points that wait for
-    grout at the end of a step and are bonded in the next one are grouted in this step.
+    Grout without pressure hardens at the start of its step: job.h5 shows it there. Grout with
+    pressure hardens after the last increment: job.h5 shows it in the next step.
     """
-    states, after = _states(results, step), _states(results, _next_step(results, step))
+    pressed = _pressed_joints(results, step)
     found: dict[str, np.ndarray | None] = {}
-    for name, state in states.items():
+    for name, state in _states(results, step).items():
         if state is None:
             found[name] = None
             continue
-        then = state if after[name] is None else after[name]
-        is_grouted = (state == BONDED) | ((state == NOT_GROUTED) & (then == BONDED))
-        found[name] = is_grouted.astype(int)
+        least = NOT_GROUTED if name.upper() in pressed else BONDED
+        found[name] = (state >= least).astype(int)
     return found
 
 
-def _next_step(results: Results, step: int) -> int:
-    """The next step in which something can move; the step itself where it is the last one."""
-    steps = {int(key): group for key, group in results.file["steps"].items()}
-    later = [number for number, group in sorted(steps.items())
-             if number > step and "modes" not in group]  # fmt: skip
-    return later[0] if later else step
+def _pressed_joints(results: Results, step: int) -> set[str]:
+    """Names, in capitals, of the joints that have *GROUT with PRESSURE in a step.
+
+    The log has the deck with all defaults. Without a log there is no such joint: then grout with
+    pressure is shown in the step after its own.
+    """
+    try:
+        text = results.path(".log").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return set()
+    steps = re.split(r"^\*STEP\b", re.split(r"^step ", text, maxsplit=1, flags=re.M)[0], flags=re.M)
+    cards = GROUT.findall(steps[step]) if step < len(steps) else []
+    return {joint.strip('"').upper() for joint, pressure in cards if float(pressure) > 0.0}
 
 
 def _has_grouts(results: Results) -> bool:

@@ -18,6 +18,8 @@ from .results import Results, Step
 LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "in": 0.0254}  # [m]
 STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 6894.757293}  # [Pa]
 
+ROUND_OFF = 1e-10  # of the size of the model; displacements are solved to some 1e-12 of it
+
 _LENGTH = re.compile(r"(?:[xyzUVA]|[UVA][123]|opening|slip[12]?|clearance|PENETRATION)$")
 _STRESS = re.compile(r"(?:t[n12]|S[123][123]|SP[123]|S[13](?:_POINT)?|pressure|water)$")
 _ENERGY = re.compile(
@@ -77,12 +79,22 @@ class SiResults(Results):
         return self.units.length * self.file["mesh/x"][:]
 
     def steps(self) -> list[Step]:
-        """The steps, their envelopes in SI units."""
+        """The steps, their envelopes in SI units; openings without round-off."""
         found = super().steps()
         for step in found:
             for name, values in step.envelopes.items():
                 step.envelopes[name] = self._envelope_unit(name) * values
+            if "OPENING" in step.envelopes:
+                step.envelopes["OPENING"] = self.without_round_off(step.envelopes["OPENING"])
         return found
+
+    def without_round_off(self, lengths: np.ndarray | float) -> np.ndarray:
+        """Openings or slips [m] in which round-off is zero.
+
+        A closed joint, whose faces have displacements of centimetres, may open by 1e-18 m.
+        """
+        least = ROUND_OFF * float(np.ptp(self.x, axis=0).max())
+        return np.where(np.abs(lengths) <= least, 0.0, lengths)
 
     def _envelope_unit(self, field: str) -> float:
         return self.units.length if field == "OPENING" else self.units.of(field)

@@ -78,12 +78,7 @@ def facts_of(outcome: Outcome) -> Facts:
     facts.cutbacks = sum(step["cutbacks"] for step in summary["steps"])
     facts.energy_error = max(abs(step["energy"]["error"]) for step in summary["steps"])
     facts.hz = [mode["hz"] for step in summary["steps"] for mode in step.get("frequencies", [])]
-    facts.extremes = summary["envelopes"]
-    for name, joint in summary["joints"].items():
-        opening = joint["opening"]
-        facts.openings[name] = {face: opening.get(face, {}).get("value", 0.0) for face in FACES}
-        facts.places[name] = opening["anywhere"].get("x", [])
-        facts.slips[name] = joint.get("slip", {}).get("anywhere", {}).get("value", 0.0)
+    _add_extremes(facts, results)
     nodes = np.unique(results.connectivity[results.dam])
     facts.height = float(np.ptp(results.x[nodes, 2]))
     damage = summary.get("damage") or {}
@@ -98,6 +93,29 @@ def facts_of(outcome: Outcome) -> Facts:
     errors = [one["estimated_error"] for one in reduced.values()]
     facts.reduced_error = max(errors) if errors else None
     return facts
+
+
+def _add_extremes(facts: Facts, results: SiResults) -> None:
+    """Extremes of the envelopes; openings and slips of each joint."""
+    summary = results.si_summary
+    facts.extremes = {
+        name: _without_round_off(results, one) if name == "OPENING" else one
+        for name, one in summary["envelopes"].items()
+    }
+    for name, joint in summary["joints"].items():
+        opening = _without_round_off(results, joint["opening"])
+        slip = _without_round_off(results, joint.get("slip", {}))
+        facts.openings[name] = {face: opening.get(face, {}).get("value", 0.0) for face in FACES}
+        facts.places[name] = opening["anywhere"].get("x", [])
+        facts.slips[name] = slip.get("anywhere", {}).get("value", 0.0)
+
+
+def _without_round_off(results: SiResults, extremes: dict[str, Any]) -> dict[str, Any]:
+    """The largest openings or slips by place as they are, round-off as 0."""
+    return {
+        place: one | {"value": float(results.without_round_off(one["value"]))}
+        for place, one in extremes.items()
+    }
 
 
 def _largest_fall(results: SiResults) -> float:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..picture_style import COLOURS, Sheet, headline, new_figure
+from ..pictures_curves import mark_of, mark_one_time
 from ..si_results import SiResults
 
 HEIGHTS = ("crest", "mid-height", "base")
@@ -32,17 +33,23 @@ def profile(results: SiResults, name: str) -> dict[str, np.ndarray]:
 
 
 def plot_profiles(runs: dict[str, SiResults], sheet: Sheet) -> list[Path]:
-    """Largest openings over the height: a panel for each joint and face, a line for each run."""
+    """Largest openings over the height: a panel for each joint and face, a line for each run.
+
+    Where no joint opens there is no picture.
+    """
     names = next(iter(runs.values())).joint_names()
-    if not names:
+    edges = {
+        (label, name): profile(results, name) for label, results in runs.items() for name in names
+    }
+    if not any(rows[:, 1].any() for both in edges.values() for rows in both.values()):
         return []
     figure, axes = new_figure(
         2, width=max(9.0, 2.6 * len(names)), row_height=3.4, columns=len(names), squeeze=False,
         sharex=True, sharey=True,
     )  # fmt: skip
     for column, name in enumerate(names):
-        for (label, results), colour in zip(runs.items(), COLOURS, strict=False):
-            for axis, rows in zip(axes[:, column], profile(results, name).values(), strict=True):
+        for label, colour in zip(runs, COLOURS, strict=False):
+            for axis, rows in zip(axes[:, column], edges[label, name].values(), strict=True):
                 axis.plot(1e3 * rows[:, 1], rows[:, 0], color=colour, label=label)
         axes[0, column].set_title(name)
         axes[1, column].set_xlabel("opening [mm]")
@@ -64,17 +71,20 @@ def plot_histories(results: SiResults, sheet: Sheet) -> list[Path]:
     )
     for row, name in enumerate(names):
         table = results.table(f"joint_{name}")
+        opening = 1e3 * results.without_round_off(table["opening"])
         for axis, height, points in zip(axes[row], HEIGHTS, by_height(table), strict=True):
             for face, rows in points.items():
                 colour = COLOURS[FACES.index(face)]
-                axis.plot(table["time"][rows], 1e3 * table["opening"][rows], color=colour,
-                          lw=1.0, label=face)  # fmt: skip
+                mark = mark_of(len(rows))
+                axis.plot(table["time"][rows], opening[rows], color=colour, lw=1.0, marker=mark,
+                          label=face)  # fmt: skip
             where = f", z = {table['z'][next(iter(points.values()))[0]]:.4g} m" if points else ""
             axis.set_title(f"{name}, {height}{where}", fontsize=11)
             axis.margins(x=0.0)
         axes[row, 0].set_ylabel("opening [mm]")
-    for axis in axes[-1]:
-        axis.set_xlabel("time [s]")
+    for column in axes.T:
+        column[-1].set_xlabel("time [s]")
+        mark_one_time(column)
     axes[0, 0].legend(loc="upper left")
     headline(figure, "Openings in time (below zero: compressed)")
     return sheet.save(figure)

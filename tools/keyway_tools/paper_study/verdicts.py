@@ -110,7 +110,9 @@ def _opening_verdicts(facts: Facts) -> list[Verdict]:
     if not facts.openings:
         return []
     size = {name: max(faces.values()) for name, faces in facts.openings.items()}
-    most = max(size, key=lambda name: size[name])
+    most = _opens_most(facts)
+    if not most:
+        return [Verdict("fair", "No joint opens; in the paper joint 1 opens most.")]
     first, *_, last = size
     kind = "good" if most == first else "fair"
     text = f"{most} opens most, {1e3 * size[most]:.3g} mm; in the paper it is joint 1."
@@ -202,8 +204,10 @@ def robust(base: Facts, others: list[Facts]) -> list[Verdict]:
 
 
 def _opens_most(facts: Facts) -> str:
+    """The joint that opens most, '' where none opens."""
     size = {name: max(faces.values()) for name, faces in facts.openings.items()}
-    return max(size, key=lambda name: size[name])
+    most = max(size, key=lambda name: size[name])
+    return most if size[most] > 0.0 else ""
 
 
 FINDINGS = {
