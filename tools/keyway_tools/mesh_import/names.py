@@ -34,8 +34,8 @@ def shared_names(names: Physical) -> list[str]:
     for (number, dimension), name in names.items():
         numbers.setdefault((name, dimension), []).append(number)
     return [
-        f"groups {', '.join(map(str, sorted(own)))} of dimension {dimension} have one name, '{name}', and "
-        "are one group in the deck"
+        f"groups {', '.join(map(str, sorted(own)))} of dimension {dimension} have one name, "
+        f"'{name}', and are one group in the deck"
         for (name, dimension), own in numbers.items()
         if len(own) > 1
     ]
