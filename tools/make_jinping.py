@@ -56,7 +56,7 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
 
 def check_outlets(options: list[str]) -> None:
     """Raises ValueError for numbers of joints at which the block of the outlets is not there."""
-    parser = Parser(prog="make_jinping", add_help=False)
+    parser = Parser(prog="make_jinping", add_help=False, allow_abbrev=False)
     parser.add_argument("--joints", type=count_from_zero)
     parser.add_argument("--joint-places", nargs="+", default=[])
     for name in ("--fine", "--outlets"):  # other blocks, or none: make_dam checks them

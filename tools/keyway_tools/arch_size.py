@@ -12,7 +12,7 @@ from .arch_stations import TooCoarseError
 from .mesh_data import BrickMesh
 
 FACTORS = np.geomspace(0.25, 16.0, 97)  # of the elements along each side
-MOST_UNKNOWNS = 5_000_000  # that --unknowns takes
+MOST_UNKNOWNS = 3_000_000  # that --unknowns takes
 # A dam that is too coarse for its joints or outlets is refined up to so many unknowns, and to
 # these times what is asked for.
 SEARCHED, TIMES = 300_000, 8
@@ -20,7 +20,8 @@ STRIDE = 4  # factors from one refinement of this kind to the next
 
 
 def unknowns_of(mesh: BrickMesh) -> int:
-    """Three at each node that is neither fixed nor follows another surface by a tie."""
+    """Three at each node that is neither fixed nor follows another surface by a tie, as the program
+    counts them."""
     bound = [mesh.node_sets["FIXED"]]
     bound += [mesh.surface_nodes(slave) for slave, _ in mesh.ties.values()]
     return 3 * (len(mesh.x) - len(np.unique(np.concatenate(bound))))
@@ -130,7 +131,9 @@ def sized_dam(
             low = middle + 1
     note = ""
     if low == 0:
-        note = f"this is the smallest mesh, with {FACTORS[0]:g} of the elements along each side"
+        note = (
+            f"this is the smallest mesh, with {FACTORS[0]:g} of the given elements along each side"
+        )
     elif low - 1 in search.faults:
         note = f"this is the smallest mesh; in a coarser one {search.faults[low - 1]}"
     return search.at(low), note and f"--unknowns {unknowns}: {note}"
