@@ -229,7 +229,7 @@ def builds(monkeypatch):
     ("options", "message"),
     [
         (["--outlets", "3", "--outlet-width", "60"], "do not fit into a block"),
-        (["--fine-above", "0.2"], "meets the rock"),
+        (["--fine", "2", "--fine-above", "0.1"], "block 2 meets the rock"),
     ],
 )
 def test_faults_that_no_mesh_mends_end_at_once(tmp_path, capsys, builds, options, message):
@@ -254,7 +254,7 @@ def test_the_smallest_mesh_is_noted(tmp_path, capsys):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--unknowns", "10"]) == 0
     said = capsys.readouterr().out
     assert "330 unknowns" in said
-    assert "note: --unknowns 10: this is the smallest mesh, with 0.25 of the given" in said
+    assert "note: --unknowns 10: this is the smallest mesh, with 0.25 of the elements" in said
 
 
 COUNTED = {

@@ -131,9 +131,7 @@ def sized_dam(
             low = middle + 1
     note = ""
     if low == 0:
-        note = (
-            f"this is the smallest mesh, with {FACTORS[0]:g} of the given elements along each side"
-        )
+        note = f"this is the smallest mesh, with {FACTORS[0]:g} of the elements along a side"
     elif low - 1 in search.faults:
         note = f"this is the smallest mesh; in a coarser one {search.faults[low - 1]}"
     return search.at(low), note and f"--unknowns {unknowns}: {note}"
