@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import keyway_tools.own_python  # noqa: F401 - before packages
+from keyway_tools.command import Parser
 from keyway_tools.study.facts import NAMES
 from keyway_tools.study.measured import time_in_words
 from keyway_tools.study.pictures import draw
@@ -151,7 +152,7 @@ def page_with(text: str) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="make_accuracy.py", description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip

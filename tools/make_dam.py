@@ -28,7 +28,7 @@ from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
 from keyway_tools.arch_blocks import JOINS, build_block_dam
-from keyway_tools.arch_checks import check_deck_options, check_motion_options
+from keyway_tools.arch_checks import check_deck_options, check_mesh, check_motion_options
 from keyway_tools.arch_command import add_arch_options, block_options_of
 from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_deck import DeckOptions, arch_dam_deck, title_of
@@ -36,14 +36,14 @@ from keyway_tools.arch_header import header
 from keyway_tools.arch_rock import RockOptions
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.arch_size import sized_dam, unknowns_of
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command, write_file
 from keyway_tools.construction.heat import name_campaigns
 from keyway_tools.construction.lifts import name_lifts
 from keyway_tools.construction.options import construction_of, temperatures_of
 from keyway_tools.deck_text import mesh_deck
 from keyway_tools.joint_points import name_joint_points
 from keyway_tools.mesh_data import BrickMesh
-from keyway_tools.mesh_quality import find_faults, report
+from keyway_tools.mesh_quality import report
 from keyway_tools.option_types import (
     above_zero,
     count,
@@ -218,9 +218,7 @@ def add_deck_options(parser: argparse.ArgumentParser) -> None:
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "-o", "--output", type=deck_path, default=Path("arch_dam.inp"), help="deck (arch_dam.inp)"
     )
@@ -274,7 +272,7 @@ def deck_options_of(chosen: argparse.Namespace) -> DeckOptions:
     if water is None:
         water = round(chosen.height * 105.0 / 135.5, 3)
     if not 0.0 <= water <= chosen.height:
-        raise ValueError(f"water must lie in 0..{chosen.height:g} (the height), found {water:g}")
+        raise ValueError(f"--water {water:g}: expected 0 to {chosen.height:g} m, the --height")
     prefix = chosen.output.with_name(f"{chosen.output.stem}_motion")
     motions, motion_dt = motion_files(chosen.motion, chosen.motion_unit, chosen.motion_dt, prefix)
     return DeckOptions(
@@ -322,33 +320,31 @@ def main(arguments: list[str] | None = None) -> int:
     """Write the deck and its mesh; print the report."""
     chosen = read_options(arguments)
     names = list(ArchShape.__dataclass_fields__)
+    note = ""
     try:
         shape = ArchShape(**{name: getattr(chosen, name) for name in names})
         mesh_options, options = mesh_options_of(chosen), deck_options_of(chosen)
         check_motion_options(chosen)
         build = partial(build_dam, chosen, shape)
         if chosen.unknowns:
-            mesh_options = sized_dam(mesh_options, chosen.unknowns, build)
+            mesh_options, note = sized_dam(mesh_options, chosen.unknowns, build, chosen.refine)
         mesh, blocks = build(mesh_options), block_options_of(chosen, mesh_options)
         if options.construction:
             name_lifts(mesh, mesh_options.num_height, options.construction.num_lifts)
             name_campaigns(mesh, options.construction)
+        check_mesh(mesh, shape)
+        if chosen.histories:
+            name_joint_points(mesh)
+        building = (options.construction, options.heat)
+        title, notes = title_of(mesh, options.title), tuple(chosen.note)
+        heading = header(mesh, shape, mesh_options, title, notes, blocks, *building)
     except ValueError as fault:
         print(f"make_dam: {fault}", file=sys.stderr)
         return 2
-    if chosen.histories:
-        name_joint_points(mesh)
-    faults = find_faults(mesh)
-    if faults:
-        print("make_dam: the mesh has faults:\n  " + "\n  ".join(faults), file=sys.stderr)
-        return 1
-    notes = tuple(chosen.note)
-    building = (options.construction, options.heat)
-    heading = header(
-        mesh, shape, mesh_options, title_of(mesh, options.title), notes, blocks, *building
-    )
     mesh_file = write_deck(chosen, mesh, heading, options)
     show(chosen, mesh, mesh_file)
+    if note:
+        print(f"note: {note}")
     return 0
 
 
@@ -356,13 +352,11 @@ def write_deck(
     chosen: argparse.Namespace, mesh: BrickMesh, heading: str, options: DeckOptions
 ) -> Path:
     """Write the deck and its mesh, and return the file of the mesh."""
-    chosen.output.parent.mkdir(parents=True, exist_ok=True)
     mesh_file = chosen.output.with_name(chosen.output.stem + "_mesh.inp")
     types = dict.fromkeys(mesh.brick_sets, options.element_type)
-    mesh_file.write_text(
-        mesh_deck(mesh, types, f"Mesh of {chosen.output.name}, made by tools/make_dam.py")
-    )
-    chosen.output.write_text(arch_dam_deck(mesh, heading, mesh_file.name, options))
+    words = f"Mesh of {chosen.output.name}, made by tools/make_dam.py"
+    write_file(mesh_file, mesh_deck(mesh, types, words))
+    write_file(chosen.output, arch_dam_deck(mesh, heading, mesh_file.name, options))
     return mesh_file
 
 

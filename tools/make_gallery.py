@@ -9,7 +9,6 @@ newer than the program and their deck are kept. `mkdocs build` calls this tool (
 
 from __future__ import annotations
 
-import argparse
 import shutil
 import subprocess
 import sys
@@ -17,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
+from keyway_tools.command import Parser
 from keyway_tools.program import given_program
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -145,7 +145,7 @@ def make_gallery(folder: Path = FOLDER) -> dict[str, Path]:
 
 def main(arguments: list[str] | None = None) -> int:
     """Make the gallery."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", type=Path, default=FOLDER)
     options = parser.parse_args(arguments)
     for picture in make_gallery(options.output).values():

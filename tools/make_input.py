@@ -6,7 +6,6 @@ The mesh of input/xingbiling is large and not kept: `tools/run` lets `--only mai
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import keyway_tools.own_python  # noqa: F401 - before packages
 import make_dam
 import make_motion
 import make_temperature
+from keyway_tools.command import Parser
 from keyway_tools.small_decks import SMALL_DECKS
 
 INPUT = Path(__file__).resolve().parents[1] / "input"
@@ -128,7 +128,7 @@ def write_shaken_dam(
 
 def main(arguments: list[str] | None = None) -> int:
     """Write everything below a folder."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = Parser(description=__doc__)
     parser.add_argument("folder", type=Path, nargs="?", default=INPUT, help="input/")
     parser.add_argument(
         "--only", choices=("small", "dam", "main", "built"), help="leave out the rest"

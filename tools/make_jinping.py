@@ -15,12 +15,14 @@ import sys
 from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
-from keyway_tools.command import command
+from keyway_tools.arch_size import MOST_UNKNOWNS
+from keyway_tools.command import Parser, command
 from keyway_tools.jinping.concrete import LAWS, RECOVERIES
 from keyway_tools.jinping.decks import DURATION, FULL, INCREMENT, SMALL, JinpingDeck, write_deck
-from keyway_tools.option_types import above_zero, count, deck_path
+from keyway_tools.option_types import above_zero, count, count_from_zero, deck_path
 
 INPUT = Path(__file__).resolve().parents[1] / "input"
+BLOCK, JOINTS = 4, (6, 7)  # of the outlets, and the numbers of joints at which it is the middle one
 KEPT = {
     "jinping": JinpingDeck(),
     "jinping_fracture_energy": JinpingDeck(law="fracture-energy"),
@@ -30,12 +32,14 @@ KEPT = {
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("deck", type=deck_path, nargs="?", help="deck to write (all of input/jinping)")
-    add("--unknowns", type=count, help=f"at least ({FULL}; {SMALL} is a size for trials)")
+    add(
+        "--unknowns",
+        type=count,
+        help=f"at least ({FULL}; {SMALL}: for trials; up to {MOST_UNKNOWNS})",
+    )
     add("--law", choices=LAWS, help="of the concrete (table1)")
     add("--recovery", choices=RECOVERIES, help="of stiffness in compression (ENERGY)")
     add("--no-outlets", action="store_true", help="leave out outlets, piers and corbel")
@@ -48,6 +52,22 @@ def read_options(arguments: list[str] | None) -> argparse.Namespace:
     ):
         parser.error("name the deck to which the options apply")
     return chosen
+
+
+def check_outlets(options: list[str]) -> None:
+    """Raises ValueError for numbers of joints at which the block of the outlets is not there."""
+    parser = Parser(prog="make_jinping", add_help=False, allow_abbrev=False)
+    parser.add_argument("--joints", type=count_from_zero)
+    parser.add_argument("--joint-places", nargs="+", default=[])
+    for name in ("--fine", "--outlets"):  # other blocks, or none: make_dam checks them
+        parser.add_argument(name, nargs="+")
+    given, _ = parser.parse_known_args(options)
+    joints = len(given.joint_places) or given.joints
+    if joints not in (None, *JOINTS) and not (given.fine or given.outlets):
+        raise ValueError(
+            f"{joints} joints: the outlets stand in block {BLOCK}, the middle one of {JOINTS[0]} "
+            f"or {JOINTS[1]} joints; expected --no-outlets, or --fine with another block"
+        )
 
 
 @command("make_jinping")
@@ -67,6 +87,12 @@ def main(arguments: list[str] | None = None) -> int:
             increment=chosen.increment,
             options=tuple(chosen.others),
         )
+        try:
+            if one.has_outlets:
+                check_outlets(chosen.others)
+        except ValueError as fault:
+            print(f"make_jinping: {fault}", file=sys.stderr)
+            return 2
         decks = {chosen.deck: one}
     return max(write_deck(deck, path, chosen.motion_of) for path, deck in decks.items())
 

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.design_spectrum import VERTICAL_SHARE, DesignSpectrum
 from keyway_tools.ground_motion import Motion, MotionOptions, final_motion, fit_motion
 from keyway_tools.motion_files import plot_spectra, write_amplitude, write_summary
@@ -36,9 +36,7 @@ FEWEST, MOST = 50.0, 1e6  # times dt in a duration
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     spectrum, times = DesignSpectrum(), MotionOptions()
     parser.add_argument("-o", "--output", type=Path, default=Path("motion"), help="PREFIX (motion)")
     parser.add_argument("--seed", type=count_from_zero, default=1, help="of the random phases (1)")

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.option_types import above_zero, count, finite
 from keyway_tools.program import reason_of
 from keyway_tools.temperature.climate import (
@@ -50,9 +50,7 @@ FEW, MANY = 1, 12  # harmonics for a constant level, and for one that changes
 
 def read_options(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("deck", type=Path, help="deck with the mesh; *INCLUDE files are read")
     parser.add_argument("-o", "--output", type=Path, help="file (NAME_temperature.csv)")
     parser.add_argument("--no-picture", action="store_true", help="only the file")

@@ -24,7 +24,7 @@ import keyway_tools.own_python  # noqa: F401 - before packages
 import numpy as np
 from keyway.batch.cases import has_step
 from keyway.deck.deck_file import named_files
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.input_digest import digest_of
 from keyway_tools.option_types import count, count_from_zero, from_zero
 from keyway_tools.written_values import Difference, compare_written
@@ -49,7 +49,7 @@ class Comparison:
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="exit code: 0 the same, 1 differences, 2 usage",

@@ -7,7 +7,7 @@ from keyway_tools.arch_dam import DamOptions, build_arch_dam
 from keyway_tools.arch_lattice import PartMesh
 from keyway_tools.arch_shape import ArchShape
 from keyway_tools.mesh_quality import corner_jacobians, find_faults, volumes
-from keyway_tools.surface_fit import facets_of, fit, pairs_of
+from keyway_tools.surface_fit import Fit, check_fit, facets_of, fit, fit_report, pairs_of
 
 CELLS = DamOptions(num_arc=16, num_height=7, num_thick=2, num_bottom=2)
 THREE, FOUR = PartMesh(3, 3), PartMesh(4, 4)
@@ -16,6 +16,10 @@ CASES = {
     "3:2": BlockOptions(refine=2, fine=(2,), fine_mesh=THREE),
     "sides 3:2": BlockOptions(refine=2, fine=(1, 3), fine_mesh=THREE),
     "upper third": BlockOptions(refine=2, fine=(2,), fine_mesh=FOUR, fine_above=0.66),
+    # its lower part ends where the block meets the rock: in wedges
+    "upper part from the rock on": BlockOptions(
+        refine=2, fine=(2,), fine_mesh=FOUR, fine_above=0.3
+    ),
     "shifted": BlockOptions(refine=2, fine=(2,), fine_mesh=PartMesh(2, 2, 0.5)),
     "all shifted": BlockOptions(refine=2, fine=(1, 2, 3), fine_mesh=PartMesh(2, 2, 0.5)),
     "chain 3:2": BlockOptions(refine=2, fine=(2,), fine_mesh=THREE, join="chain"),
@@ -74,6 +78,23 @@ def test_faces_have_opposite_normals(case):
     for slave, master in pairs_of(mesh).values():
         one, other = normal(slave), normal(master)
         assert one @ other < -0.999 * np.linalg.norm(one) * np.linalg.norm(other)
+
+
+@pytest.mark.parametrize(
+    "found", [Fit(100.0, 97.0, 0.0), Fit(100.0, 100.0, np.nan), Fit(100.0, 100.0, 1.0)]
+)
+def test_sides_that_do_not_fit_are_refused(found):
+    check_fit("LIFT2", Fit(100.0, 99.0, 0.4))
+    with pytest.raises(ValueError, match="LIFT2: its two sides do not fit: areas 100 and"):
+        check_fit("LIFT2", found)
+
+
+def test_a_face_without_area_is_refused():
+    mesh = build_block_dam(ArchShape(), CELLS, CASES["upper part from the rock on"])
+    surface = mesh.ties["LIFT2"][1]
+    mesh.surfaces[surface] = [(brick, 5) for brick, _ in mesh.surfaces[surface]]
+    with pytest.raises(ValueError, match="LIFT2: its two sides do not fit"):
+        fit_report(mesh)
 
 
 def test_chain_stands_on_the_coarse_face():

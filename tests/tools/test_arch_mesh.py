@@ -176,8 +176,9 @@ def test_volume_converges_to_the_closed_form():
 @pytest.mark.parametrize(
     ("shape", "options", "words"),
     [
-        ({"height": -1.0}, {}, "height must be > 0"),
-        ({"bottom_width": 1000.0}, {}, "bottom_width must lie"),
+        ({"height": -1.0}, {}, "--height -1: expected a length above 0"),
+        ({"bottom_width": 1000.0}, {}, "--bottom-width 1000: expected 0 or more and below"),
+        ({"crest_angle": 0.0}, {}, "--crest-angle 0: expected an angle above 0 and below 160"),
         ({"base_radius_ratio": 0.02}, {}, "does not span the valley"),
         ({}, {"num_arc": 12}, "at least 28 are needed"),
         ({}, {"num_arc": 29}, "must be even"),

@@ -85,7 +85,15 @@ def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--water", "200"], "water must lie in 0..135.5"),
+        (["--water", "200"], "--water 200: expected 0 to 135.5 m, the --height"),
+        (
+            ["--height", "200", "--crest-arc", "60"],
+            "the crest of 60 m is too short for a height",
+        ),
+        (["--base-thickness", "300"], "m thick, 262.7 m from the axis of the dam; expected a long"),
+        (["--extent", "20"], "elements of the rock are inside out: layers of rock cross"),
+        (["--unknowns", "100000000000"], "--unknowns 100000000000: expected at most 3000000"),
+        (["--fine", "2", "--fine-above", "0.99"], "--fine-above 0.99: block 2 has no level of 12"),
         (["--motion", "nowhere.txt"], "there is no motion file 'nowhere.txt'"),
         (["--uplift", "OPEN", "--water", "0"], "--uplift needs water"),
         (["--reduced", "0.6"], "--reduced: 0.6; expected an error above 0, up to 0.5"),
@@ -104,7 +112,18 @@ def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
 )
 def test_options_out_of_range_are_reported(tmp_path, capsys, options, message):
     assert make_dam.main(["-o", str(tmp_path / "x.inp"), *options]) == 2
-    assert message in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert message in said
+    assert len(said.splitlines()) == 1
+
+
+def test_a_deck_that_cannot_be_written_is_named(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    small = ["--arc", "14", "--levels", "6", "--bottom", "2", "--thick", "2"]
+    deck = tmp_path / "file" / "dam.inp"
+    assert make_dam.main(["-o", str(deck), *small]) == 2
+    words = f"make_dam: '{deck.with_name('dam_mesh.inp')}' could not be written: "
+    assert capsys.readouterr().err.startswith(words)
 
 
 def test_limits_of_the_program_are_those_of_the_tool(tmp_path, keyway):

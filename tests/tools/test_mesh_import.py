@@ -224,6 +224,75 @@ def test_groups_whose_names_become_one(tmp_path, capsys):
     assert "note: group 'Gr\u00fcndung' is GR_NDUNG in the deck" in capsys.readouterr().out
 
 
+def two_cubes(path, names):
+    """Two volumes, 1 and 2, and a face, 1, of Gmsh; names of groups by dimension and number."""
+    lines = [f'{dim} {number} "{name}"' for (dim, number), name in names.items()]
+    x, bricks, node = grid((2, 1, 1))
+    rows = [f"{k + 1} {' '.join(f'{v:g}' for v in point)}" for k, point in enumerate(x)]
+    face = face_x(node, 2, 0, 0)
+    cells = [(5, 1, bricks[0]), (5, 2, bricks[1]), (3, 1, face)]
+    elements = [
+        f"{k} {kind} 2 {number} {number} {' '.join(str(n + 1) for n in own)}"
+        for k, (kind, number, own) in enumerate(cells, 1)
+    ]
+    parts = [["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]]
+    for word, own in (("PhysicalNames", lines), ("Nodes", rows), ("Elements", elements)):
+        parts.append([f"${word}", str(len(own)), *own, f"$End{word}"])
+    path.write_text("\n".join(line for part in parts for line in part) + "\n")
+    return path
+
+
+def test_a_volume_and_a_surface_of_gmsh_have_one_name(tmp_path):
+    """And one number; meshio keeps the last of them by name."""
+    names = {(3, 1): "DAM", (3, 2): "ROCK", (2, 1): "DAM"}
+    imported = import_mesh(read_grouped_mesh(two_cubes(tmp_path / "m.msh", names)), [], {})
+    assert {name: len(own) for name, own in imported.mesh.brick_sets.items()} == {
+        "DAM": 1,
+        "ROCK": 1,
+    }
+    assert set(imported.mesh.surfaces) == {"DAM"}
+    assert imported.notes == []
+
+
+@pytest.mark.parametrize(
+    ("second", "note"),
+    [
+        ("DAM", "groups 1, 2 of dimension 3 have one name, 'DAM', and are one group in the deck"),
+        ("dam", "groups 'DAM' and 'dam' are one group, DAM: a deck does not tell small letters"),
+    ],
+)
+def test_two_volumes_that_become_one_group_are_noted(tmp_path, capsys, second, note):
+    path = two_cubes(tmp_path / "m.msh", {(3, 1): "DAM", (3, 2): second, (2, 1): "dam"})
+    assert main([str(path)]) == 0
+    said = capsys.readouterr().out
+    assert f"note: {note}" in said
+    assert "element sets: DAM (2)" in said
+    assert said.count("note:") == 1
+
+
+@pytest.mark.parametrize("value", ["nan", "inf"])
+def test_coordinates_are_finite(tmp_path, capsys, value):
+    path = two_cubes(tmp_path / "m.msh", {(3, 1): "DAM"})
+    path.write_text(path.read_text().replace("\n3 0 1 0\n", f"\n3 0 {value} 0\n"))
+    assert main([str(path)]) == 2
+    said = capsys.readouterr().err
+    assert f"m.msh: node 3 in the order of the file has the coordinates 0, {value}, 0;" in said
+    assert not list(tmp_path.glob("*.inp"))
+
+
+def test_a_file_that_is_cut_is_said_to_be_so(tmp_path, capsys):
+    whole = two_cubes(tmp_path / "m.msh", {(3, 1): "DAM"}).read_text()
+    reasons = set()
+    for share in (0.0, 0.1, 0.3, 0.5, 0.7, 0.9):
+        (tmp_path / "m.msh").write_text(whole[: int(share * len(whole))])
+        assert main([str(tmp_path / "m.msh")]) == 2
+        reasons.add(capsys.readouterr().err.split("meshio reads: ")[-1].strip())
+    assert "the file is empty" in reasons
+    assert "it is cut, or its contents are not those of .msh" in reasons
+    for words in ("index out of range", "concatenate", "unpack", "NoneType"):
+        assert not [reason for reason in reasons if words in reason]
+
+
 def test_a_deck_with_parts_is_refused(tmp_path, capsys):
     """meshio would read one part alone, without its place in the assembly."""
     text = "*HEADING\n*Part, name=A\n*NODE\n1, 0., 0., 0.\n*End Part\n"
@@ -242,7 +311,7 @@ def test_a_deck_with_parts_is_refused(tmp_path, capsys):
         ),
         ("a.inp", "", "no nodes; expected a mesh of solids"),
         ("a.msh", "this is no mesh\n", "meshio reads: its contents are not those of .msh"),
-        ("a.vtu", "", "not a mesh that meshio reads: "),
+        ("a.vtu", "", "not a mesh that meshio reads: the file is empty"),
     ],
 )
 def test_the_reason_is_given(tmp_path, capfd, name, text, message):

@@ -163,3 +163,19 @@ def test_no_solid_is_lost_where_a_group_has_the_name_of_the_rest(tmp_path):
         "SOLID": 1,
         "SOLID_2": 2,
     }
+
+
+def test_shells_are_taken_as_faces_with_a_note(tmp_path):
+    shells = "*ELEMENT, TYPE=S4, ELSET=SK\n30, 101, 102, 112, 111\n31, 102, 103, 113, 112\n"
+    imported = import_mesh(read(tmp_path, shells), [], {})
+    assert len(imported.mesh.surfaces["SK"]) == 2
+    note = "2 elements of the type S4 are taken as faces, for surfaces and sets of nodes"
+    assert [n for n in imported.notes if n.startswith(note)]
+
+
+@pytest.mark.parametrize("value", ["nan", "-inf", "1e999"])
+def test_coordinates_of_a_deck_are_finite(tmp_path, value):
+    mesh = MESH.replace("102, 1., 0., 0.", f"102, 1., {value}, 0.")
+    words = rf"m.inp:3: node 102 has the coordinates 1., {value}, 0.; expected finite numbers"
+    with pytest.raises(MeshError, match=words):
+        read(tmp_path, "", mesh)

@@ -26,7 +26,7 @@ BAD = [
     (make_dam, "--damping 0.05 0 0", "expected frequencies above 0, F1 below F2"),
     (make_dam, "--lifts 2 --grouting 1 2 --temperatures 1e-5 16 10 --seasons a.csv nan 1",
      "expected a file and two numbers above 0"),
-    (make_dam, "--joint-places 900", "900 m is too near an end of the crest, or beyond it"),
+    (make_dam, "--joint-places 900", "900 m is not on the crest; expected 0 to 444.86 m"),
     (make_dam, "--joint-places 20 30 --joints 3", "20 and 30 m are nearest to one column"),
     (make_dam, "--lifts 0", "0: expected a whole number, 1 or more"),
     (make_dam, "--lifts 3 --grouting 3 --grout-pressure -1", "-1: expected a number of 0 or more"),
@@ -45,6 +45,15 @@ BAD = [
     (make_temperature, "dam.inp --air 9 9 --harmonics 0", "0: expected a whole number, 1 or more"),
     (make_jinping, "dam.inp --unknowns 0", "0: expected a whole number, 1 or more"),
 ]  # fmt: skip
+
+
+def test_a_fault_of_an_option_is_one_sentence(capsys):
+    """Without the usage, which is 41 lines of make_dam."""
+    with pytest.raises(SystemExit):
+        make_dam.main(["--height", "-3"])
+    said = capsys.readouterr().err
+    words = "argument --height: -3: expected a number above 0 (--help shows all options)\n"
+    assert said.partition(": ")[2] == words
 
 
 @pytest.mark.parametrize(("tool", "options", "expected"), BAD)

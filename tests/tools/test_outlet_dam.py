@@ -1,5 +1,7 @@
 """Dams with parabolic arches of variable thickness, joints at places, and outlets."""
 
+import re
+
 import make_dam
 import numpy as np
 import pytest
@@ -175,14 +177,23 @@ SMALL = ["--height", "306.5", "--crest-arc", "563.77", "--arc", "34", "--levels"
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--outlets", "3", "--outlet-block", "2"], "give block 2 to --fine"),
+        (["--outlets", "3", "--outlet-block", "2"], "expected --fine 2 with a --fine-above"),
+        (["--outlets", "3", "--fine-above", "0"], "expected a larger --fine-above"),
+        (["--outlets", "3", "--joints", "0"], "block 1 of 1 is not between two joints"),
+        (
+            ["--outlets", "3", "--outlet-roof", "400"],
+            "--outlet-roof 400: expected at most the heig",
+        ),
         (["--outlets", "9"], "9 outlets need an even number of elements"),
         (["--outlets", "3", "--outlet-width", "60"], "do not fit into a block"),
         (["--outlets", "3", "--outlet-sill", "100"], "sill"),
-        (["--outlets", "3", "--outlet-sill", "175", "--outlet-roof", "190"], "lower --fine-above"),
+        (
+            ["--outlets", "3", "--outlet-sill", "175", "--outlet-roof", "190"],
+            "a smaller --fine-above",
+        ),
         (["--fine", "4:a"], "--fine takes B"),
         (["--joint-places", "1", "2", "3"], "1 m is too near an end of the crest"),
-        (["--abutment-thickening", "9"], "abutment_thickening must lie"),
+        (["--abutment-thickening", "9"], "--abutment-thickening 9: expected a number of 0.5 to 3"),
         (["--concrete-cards", "nowhere.inp"], "there is no file of cards"),
     ],
 )
@@ -199,6 +210,71 @@ def test_a_number_of_unknowns_is_met_from_above(tmp_path, capsys):
     unknowns = int(capsys.readouterr().out.split(" unknowns")[0].split()[-1])
     # two elements through the thickness become three: half as much again
     assert 12000 <= unknowns < 18000
+
+
+@pytest.fixture
+def builds(monkeypatch):
+    """The dams that the tool builds."""
+    seen = []
+
+    def build(shape, dam, options):
+        seen.append(dam)
+        return build_block_dam(shape, dam, options)
+
+    monkeypatch.setattr(make_dam, "build_block_dam", build)
+    return seen
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--outlets", "3", "--outlet-width", "60"], "do not fit into a block"),
+        (["--fine", "2", "--fine-above", "0.1"], "block 2 meets the rock"),
+    ],
+)
+def test_faults_that_no_mesh_mends_end_at_once(tmp_path, capsys, builds, options, message):
+    words = ["-o", str(tmp_path / "x.inp"), *SMALL, *options, "--unknowns", "12000"]
+    assert make_dam.main(words) == 2
+    assert message in capsys.readouterr().err
+    assert len(builds) <= 1
+
+
+def test_faults_that_a_finer_mesh_mends_go_on(tmp_path, capsys, builds):
+    """Nine outlets need 20 elements across their block; the smallest mesh with them is noted."""
+    words = ["-o", str(tmp_path / "x.inp"), *SMALL, "--outlets", "9", "--outlet-width", "4"]
+    assert make_dam.main([*words, "--unknowns", "100"]) == 0
+    said = capsys.readouterr().out
+    assert (
+        "note: --unknowns 100: this is the smallest mesh; in a coarser one 9 outlets need" in said
+    )
+    assert max(dam.num_arc for dam in builds) < 200
+
+
+def test_the_smallest_mesh_is_noted(tmp_path, capsys):
+    assert make_dam.main(["-o", str(tmp_path / "x.inp"), "--unknowns", "10"]) == 0
+    said = capsys.readouterr().out
+    assert "330 unknowns" in said
+    assert "note: --unknowns 10: this is the smallest mesh, with 0.25 of the elements" in said
+
+
+COUNTED = {
+    "lift, base and chains": [*SMALL, "--outlets", "3"],
+    "bases alone": ["--arc", "16", "--levels", "7", "--bottom", "2", "--thick", "2", "--refine",
+                    "2", "--fine", "1", "3", "--fine-refine", "3", "--fine-thick", "3"],
+    "fixed abutment": ["--arc", "20", "--levels", "8", "--thick", "2", "--joints", "3", "--fine",
+                       "2", "--fine-above", "0.5", "--no-rock", "--height", "80", "--crest-arc",
+                       "300"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_unknowns_are_those_of_the_program(tmp_path, capsys, keyway, name):
+    deck = tmp_path / "x.inp"
+    assert make_dam.main(["-o", str(deck), *COUNTED[name]]) == 0
+    counted = int(capsys.readouterr().out.split(" unknowns")[0].split()[-1])
+    run = keyway(deck, "--check")
+    found = re.search(r"^ *unknowns +(\d+)$", run.stdout, re.MULTILINE)
+    assert int(found[1]) == counted
 
 
 def test_scaling_keeps_proportions():

@@ -18,7 +18,7 @@ from .arch_dam import DamOptions
 from .arch_lattice import Lattice, Part, PartMesh, in_cells
 from .arch_rock import build_rock
 from .arch_shape import ArchShape
-from .arch_stations import joint_stations, place_stations
+from .arch_stations import TooCoarseError, joint_stations, place_stations
 from .mesh_data import BrickMesh
 from .outlets.options import OutletOptions
 from .outlets.part import OutletPart
@@ -55,7 +55,7 @@ class BlockOptions:
         if self.slave not in ("fine", "coarse"):
             raise ValueError(f"slave must be fine or coarse, found '{self.slave}'")
         if not 0.0 <= self.fine_above < 1.0:
-            raise ValueError(f"fine_above must lie in 0..1 (below 1), found {self.fine_above}")
+            raise ValueError(f"--fine-above {self.fine_above:g}: expected 0 or more and below 1")
 
 
 @dataclass
@@ -177,11 +177,7 @@ def _build_blocks(
         layers = [(0, lattice.top, own)]
         if is_fine and cut > 0:
             foot = max(int(slot[abs(c)]) for c in columns)
-            if foot > cut:
-                raise ValueError(
-                    f"block {number} meets the rock at level {foot} of {lattice.top}, above "
-                    f"level {cut}, where it is to be finer"
-                )
+            _check_cut(number, foot, cut, lattice.top, options.fine_above)
             layers = [(0, cut, base), (cut, lattice.top, own)]
         outlets = options.outlets if options.outlets and options.outlets.block == number else None
         parts = []
@@ -198,6 +194,26 @@ def _build_blocks(
         if len(parts) == 2:
             _tie_lift(whole.mesh, number, parts)
     return blocks
+
+
+def _check_cut(number: int, foot: int, cut: int, top: int, share: float) -> None:
+    """Raises ValueError for a block that meets the rock where it is to be finer, or ends there."""
+    if cut >= top:
+        raise TooCoarseError(
+            f"--fine-above {share:g}: block {number} has no level of {top} above that; expected a "
+            "smaller --fine-above or more --levels"
+        )
+    if foot > cut:
+        # levels are rounded to elements: a finer mesh may help by a level or two
+        raise (TooCoarseError if foot - cut <= 2 and foot < top else ValueError)(
+            f"block {number} meets the rock at level {foot} of {top}, above level {cut}, where it "
+            "is to be finer; expected "
+            + (
+                "a block between two joints"
+                if foot == top
+                else f"--fine-above {foot / top:.2f} or more"
+            )
+        )
 
 
 def _tie_lift(mesh: BrickMesh, number: int, parts: list[Part]) -> None:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import argparse
 
+import numpy as np
+
 from .arch_deck import DeckOptions
+from .arch_shape import ArchShape
+from .mesh_data import BrickMesh
+from .mesh_quality import corner_jacobians, find_faults
 
 MOST_PRINTED = 2**31 - 1  # integers of a deck
 # Options of the dynamic step or of its motion, with their defaults
@@ -74,3 +79,46 @@ def _check_damping(ratio: float, first: float, second: float) -> None:
         raise ValueError(f"{found}: expected a RATIO of 0 or more and below 1")
     if not 0.0 < first < second:
         raise ValueError(f"{found}: expected frequencies above 0, F1 below F2")
+
+
+def check_mesh(mesh: BrickMesh, shape: ArchShape) -> None:
+    """Raises ValueError for a mesh with faults, with the options that make them."""
+    inverted = (corner_jacobians(mesh) <= 0.0).any(axis=1)
+    for name, why in (("DAM", why_dam_is_inverted(shape)), ("ROCK", WHY_ROCK_IS_INVERTED)):
+        count = int(inverted[mesh.brick_sets.get(name, [])].sum())
+        if count:
+            raise ValueError(f"{count} elements of the {name.lower()} are inside out: {why}")
+    if faults := find_faults(mesh):
+        raise ValueError(f"the mesh has faults: {'; '.join(faults)}")
+
+
+WHY_ROCK_IS_INVERTED = (
+    "layers of rock cross beside so narrow a valley; expected a longer --crest-arc, or a smaller "
+    "--extent or --height"
+)
+
+
+def why_dam_is_inverted(shape: ArchShape) -> str:
+    """The reason in the shape, and the options that mend it."""
+    z = np.linspace(0.0, shape.height, 101)
+    end = shape.abutment_angle(z)
+    for angle in (np.zeros_like(z), end):
+        far, thick = shape.upstream_distance(angle, z), shape.thickness(z, angle)
+        worst = int(np.argmin(far - thick))
+        if far[worst] <= thick[worst]:
+            return (
+                f"at z = {z[worst]:.4g} m the arch is {thick[worst]:.4g} m thick, {far[worst]:.4g} "
+                "m from the axis of the dam; expected a longer --crest-arc, or a smaller "
+                "--base-thickness or --crest-thickness"
+            )
+    if np.diff(end).min() <= 0.0:
+        return (
+            f"the crest of {shape.crest_arc:g} m is too short for a height of {shape.height:g} m: "
+            "the planes of the mesh, through the axis of the dam, cross the abutment twice; "
+            "expected a longer --crest-arc, or a smaller --height, --bottom-width or "
+            "--crest-overhang"
+        )
+    return (
+        "the arches are too curved for their thickness; expected a longer --crest-arc, or a "
+        "smaller --base-thickness, --crest-thickness, --crest-angle or --crest-overhang"
+    )

@@ -9,6 +9,7 @@ from .arch_blocks import BlockOptions
 from .arch_curves import CURVES
 from .arch_dam import DamOptions
 from .arch_lattice import PartMesh
+from .arch_size import MOST_UNKNOWNS
 from .construction.options import add_construction_options
 from .option_types import above_zero, count, finite
 from .outlets.options import add_outlet_options, outlet_options_of
@@ -34,7 +35,10 @@ def add_arch_options(parser: argparse.ArgumentParser) -> None:
         "equal parts",
     )
     group.add_argument(
-        "--unknowns", type=count, help="scale all numbers of elements to have at least so many"
+        "--unknowns",
+        type=count,
+        help="scale all numbers of elements to have at least so many, as the program counts them "
+        f"(up to {MOST_UNKNOWNS})",
     )
     group.add_argument(
         "--concrete-cards", type=Path, metavar="FILE", help="cards that follow *ELASTIC of the dam"

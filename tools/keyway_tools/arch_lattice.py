@@ -30,6 +30,10 @@ class PartMesh:
             raise ValueError(f"levels must shift by less than an element, found {self.shift}")
 
 
+# Face on top of an element of a column by the ends at which it has a side; a wedge has one side.
+TOP_OF = {"left right": 5, "left": 4, "right": 6}
+
+
 def in_cells(place: int, refine: int) -> float:
     """A number of elements as a coordinate in cells; whole cells have no round-off."""
     cell, inside = divmod(abs(place), refine)
@@ -151,7 +155,7 @@ class Part:
                 sides = {"DOWNSTREAM": 1, "UPSTREAM": 2}
                 faces = {"BASE": 3} if place == 0 else {}
                 if place == len(polygons) - 1:
-                    faces["TOP"] = 5
+                    faces["TOP"] = TOP_OF[ends]
                 if column == self.left and "left" in ends:
                     faces["LEFT"] = 6
                 if column == self.right - 1 and "right" in ends:

@@ -37,27 +37,30 @@ class ArchShape:
     def __post_init__(self) -> None:
         for name in ("height", "crest_arc", "crest_thickness", "base_thickness"):
             if getattr(self, name) <= 0.0:
-                raise ValueError(f"{name} must be > 0, found {getattr(self, name)}")
+                raise self._fault(name, "a length above 0")
         if self.arches not in CURVES:
-            raise ValueError(f"arches must be {' or '.join(CURVES)}, found '{self.arches}'")
+            raise self._fault("arches", " or ".join(CURVES))
         if not 0.5 <= self.abutment_thickening <= 3.0:
-            raise ValueError(
-                f"abutment_thickening must lie in 0.5..3, found {self.abutment_thickening}"
-            )
+            raise self._fault("abutment_thickening", "a number of 0.5 to 3")
         if not 0.0 < self.crest_angle < 160.0:
-            raise ValueError(f"crest_angle must lie in 0..160 degrees, found {self.crest_angle}")
+            raise self._fault("crest_angle", "an angle above 0 and below 160 degrees")
         if not 0.0 < self.vertical_tangent <= 1.5:
-            raise ValueError(f"vertical_tangent must lie in 0..1.5, found {self.vertical_tangent}")
+            raise self._fault("vertical_tangent", "a number above 0, at most 1.5")
         if not 0.0 <= self.bottom_width < 2.0 * self.crest_half_width:
-            raise ValueError(
-                f"bottom_width must lie in 0..{2.0 * self.crest_half_width:.1f} m "
-                f"(the width at the crest), found {self.bottom_width}"
-            )
+            width = f"{2.0 * self.crest_half_width:.1f} m, the width at the crest"
+            raise self._fault("bottom_width", f"0 or more and below {width}")
         widest = max(self.bottom_width / 2.0, 0.0)
         if widest >= self.curve.reach(self.upstream_radius(0.0)):
             raise ValueError(
-                "the arch at the base does not span the valley: raise base_radius_ratio"
+                "the arch at the base does not span the valley; expected a larger "
+                "--base-radius-ratio or a smaller --bottom-width"
             )
+
+    def _fault(self, name: str, expected: str) -> ValueError:
+        """The fault of a value, by the name of its option."""
+        value = getattr(self, name)
+        found = value if isinstance(value, str) else f"{value:g}"
+        return ValueError(f"--{name.replace('_', '-')} {found}: expected {expected}")
 
     @property
     def curve(self) -> ArchCurve:
@@ -126,7 +129,10 @@ class ArchShape:
         """Angle [rad] of the mesh plane in which the upstream face meets the valley at height z."""
         x = self.half_width(z)
         if np.any(x >= self.curve.reach(self.upstream_radius(z))):
-            raise ValueError("an arch does not span the valley: raise base_radius_ratio")
+            raise ValueError(
+                "an arch does not span the valley; expected a larger --base-radius-ratio or a "
+                "smaller --bottom-width"
+            )
         return self.plane_angle(x, z)
 
     def crest_position(self, angle):

@@ -14,6 +14,10 @@ import numpy as np
 from .arch_shape import ArchShape
 
 
+class TooCoarseError(ValueError):
+    """A dam that cannot be built with these elements, and may be with more of them."""
+
+
 @dataclass(frozen=True)
 class Stations:
     """One half of the developed mesh, crown included."""
@@ -75,7 +79,9 @@ def joint_stations(
     """
     arc = shape.crest_position(stations.angle)
     is_given = bool(places)
-    if not is_given:
+    if is_given:
+        _check_places(shape, sorted(places))
+    else:
         places = tuple(shape.crest_arc * (j + 1) / (num_joints + 1) for j in range(num_joints))
     found = []
     for place in sorted(places):
@@ -87,8 +93,20 @@ def joint_stations(
         reason = f"{len(places)} joints do not fit into {2 * stations.count} columns of elements"
         if is_given:
             reason = _why_not_there(shape, stations, sorted(places), found)
-        raise ValueError(reason)
+        raise TooCoarseError(reason)
     return found
+
+
+def _check_places(shape: ArchShape, places: list[float]) -> None:
+    """Raises ValueError for places of joints that no mesh has."""
+    for k, place in enumerate(places):
+        if not 0.0 < place < shape.crest_arc:
+            raise ValueError(
+                f"--joint-places: {place:g} m is not on the crest; expected 0 to "
+                f"{shape.crest_arc:g} m from its left end, without both ends"
+            )
+        if k and place == places[k - 1]:
+            raise ValueError(f"--joint-places: {place:g} m is there twice; expected it once")
 
 
 def _why_not_there(

@@ -1,13 +1,17 @@
-"""What all commands share: a closed pipe, and a fault of the system in place of a traceback."""
+"""What all commands share: a closed pipe, faults of the system and of the command line in a
+sentence."""
 
 from __future__ import annotations
 
+import argparse
 import io
 import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
+from pathlib import Path
+from typing import NoReturn
 
 from .program import DamagedFileError, reason_of
 
@@ -75,6 +79,26 @@ def _flush(stream: io.TextIOWrapper) -> None:
     except OSError:
         _to_nowhere(stream.fileno())
         raise
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write a text, with the folders of its path. Raises OSError that says what was not written."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OSError(
+            f"'{path}' could not be written: {error.strerror}; expected a file in a folder in "
+            "which you may write"
+        ) from None
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong with the command line in one sentence, without all options."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with the code for a fault of usage."""
+        self.exit(EXIT_USAGE, f"{self.prog}: {message} (--help shows all options)\n")
 
 
 def command(name: str) -> Callable[[Main], Main]:

@@ -10,6 +10,8 @@ from .mesh_data import BrickMesh
 
 _GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 _NEIGHBOURS = 12  # facets searched for the nearest point
+AREAS_APART = 0.02  # of the areas of two sides that meet, over the larger one
+DISTANCE = 0.05  # of their largest distance over the root of the area
 
 
 @dataclass(frozen=True)
@@ -62,8 +64,9 @@ def distance(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
             aa, ab, bb = (a * a).sum(-1), (a * b).sum(-1), (b * b).sum(-1)
             right_a, right_b = (a * away).sum(-1), (b * away).sum(-1)
             det = aa * bb - ab**2
-            r = np.clip(r + (bb * right_a - ab * right_b) / det, -1.0, 1.0)
-            s = np.clip(s + (aa * right_b - ab * right_a) / det, -1.0, 1.0)
+            with np.errstate(divide="ignore", invalid="ignore"):  # of a facet without area: NaN
+                r = np.clip(r + (bb * right_a - ab * right_b) / det, -1.0, 1.0)
+                s = np.clip(s + (aa * right_b - ab * right_a) / det, -1.0, 1.0)
         nearest = (_shape(r, s)[0][:, None, :] @ corners)[:, 0]
         found[number] = np.linalg.norm(nearest - point, axis=-1).min()
     return found
@@ -81,12 +84,28 @@ def pairs_of(mesh: BrickMesh) -> dict[str, tuple[str, str]]:
     return {**mesh.surface_joints, **mesh.ties}
 
 
+def check_fit(name: str, found: Fit) -> None:
+    """Raises ValueError for two surfaces that do not lie on each other.
+
+    Areas of different meshes of a curved face differ by less than AREAS_APART.
+    """
+    areas = found.slave_area, found.master_area
+    is_level = abs(areas[0] - areas[1]) <= AREAS_APART * max(areas)  # False for NaN
+    if not (is_level and found.largest_distance <= DISTANCE * max(areas) ** 0.5):
+        raise ValueError(
+            f"{name}: its two sides do not fit: areas {areas[0]:.6g} and {areas[1]:.6g} m2, "
+            f"{found.largest_distance:.2g} m apart (nan: a face without area); expected equal "
+            f"areas to {100 * AREAS_APART:g} % and sides that lie on each other"
+        )
+
+
 def fit_report(mesh: BrickMesh) -> str:
-    """A line for every pair of surfaces that meet."""
+    """A line for every pair of surfaces that meet. Raises ValueError where two do not fit."""
     lines = []
     for name, (slave, master) in pairs_of(mesh).items():
         facets = len(mesh.surfaces[slave]), len(mesh.surfaces[master])
         found = fit(mesh, slave, master)
+        check_fit(name, found)
         lines.append(
             f"{name}: {facets[0]} facets of {slave} on {facets[1]} of {master}, areas "
             f"{found.slave_area:.6g} and {found.master_area:.6g} m2, at most "

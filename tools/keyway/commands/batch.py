@@ -25,7 +25,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.deck_runs import Record
 from keyway_tools.option_types import above_zero, count
 from keyway_tools.program import given_program, reason_of
@@ -48,7 +48,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     if "--" in arguments:
         cut = arguments.index("--")
         arguments, options = arguments[:cut], arguments[cut + 1 :]
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="exit code: 0 all finished, 1 some did not, 2 usage, 130 interrupted",

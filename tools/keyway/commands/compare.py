@@ -21,7 +21,7 @@ else:
     import tomli as tomllib
 
 from keyway_tools import comparison
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.comparison import Report, Rules, Tolerance
 from keyway_tools.option_types import count_from_zero, from_zero
 from keyway_tools.program import reason_of
@@ -41,7 +41,7 @@ exit code: 0 equal, 1 different, 2 usage"""
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         description=__doc__, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument

@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from keyway_tools.colour_scale import FIELDS, Scales, parse_levels, parse_ranges
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.deck_units import open_in_si
 from keyway_tools.picture_style import FORMATS, Sheet
 from keyway_tools.pictures_curves import (
@@ -99,7 +99,7 @@ def _draw_envelopes(
 
 def draw_material(arguments: list[str]) -> int:
     """Draw curves of material tests in one picture."""
-    parser = argparse.ArgumentParser(prog=f"{command_name('plot.py')} material")
+    parser = Parser(prog=f"{command_name('plot.py')} material")
     parser.add_argument("curves", type=Path, nargs="+", help="job_material_NAME.csv")
     points = "measured points, a strain and a stress per line; may be repeated"
     parser.add_argument("-e", "--experiment", type=Path, action="append", default=[], help=points)
@@ -120,9 +120,7 @@ def draw_material(arguments: list[str]) -> int:
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, nargs="+", help="folders of results, or jobs in them")
     parser.add_argument("-o", "--output", type=Path, help="folder of the pictures (RESULTS)")
     parser.add_argument("--job", help="only this job")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import make_dam
 
+from ..command import write_file
 from .concrete import DAMAGE_AT_END, FRACTURE_ENERGY, STATIC_TIME, VISCOSITY, law_cards
 
 FULL, SMALL = 100_000, 15_000  # unknowns, at least
@@ -73,7 +74,7 @@ def deck_options(deck: JinpingDeck, path: Path, motion: Path) -> list[str]:
         options += ["--note", note]
     if deck.law != "elastic":
         cards = path.with_name(f"{path.stem}_concrete.txt")
-        cards.write_text(law_cards(deck.law, deck.recovery), encoding="utf-8")
+        write_file(cards, law_cards(deck.law, deck.recovery))
         options += ["--concrete-cards", str(cards)]
     if deck.law in CONTROLS:
         options += ["--controls", CONTROLS[deck.law]]

@@ -17,7 +17,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..command import command
+from ..command import Parser, command
 from ..deck_text import id_lines, mesh_deck
 from ..mesh_quality import find_faults, report
 from ..option_types import above_zero
@@ -30,7 +30,7 @@ KINDS = ("C3D8", "C3D8B", "C3D8I", "C3D8R")
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog=command_name("mesh"),
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -6,6 +6,7 @@ and GENERATE has a range a line. A set of nodes may be those of a set of element
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -40,6 +41,7 @@ KINDS = [
         (r"T[23]D3H?|B[23]2[A-Z]*", "line3", 3),
     )
 ]
+SURFACE_KINDS = {"quad", "triangle"}
 OWN_KINDS = {"C3D8B", "JOINT8", "IFACE4"}  # elements that other programs do not have
 # Keywords that make or move nodes and elements.
 MAKERS = {"ELCOPY", "ELGEN", "NCOPY", "NFILL", "NGEN", "NMAP", "SYSTEM"}
@@ -81,6 +83,7 @@ class _Reader:
         self.elements: dict[int, tuple[int, int]] = {}  # block and position in it by number
         self.cells: list[tuple[str, dict[int, list[int]]]] = []  # nodes by number of element
         self.sets = {kind: _Sets(kind) for kind in MEMBERS}
+        self.shells: dict[str, int] = {}  # elements that become faces, by type
 
     def read(self, cards: list[Card]) -> None:
         """Take all cards."""
@@ -144,6 +147,9 @@ class _Reader:
                 x = [float(re.sub("[dD]", "e", word)) if word else 0.0 for word in row[1:4]]
             except ValueError:
                 raise MeshError(f"{place}: found '{', '.join(row)}'; expected numbers") from None
+            if not all(map(math.isfinite, x)):
+                what = f"node {number} has the coordinates {', '.join(row[1:4])}"
+                raise MeshError(f"{place}: {what}; expected finite numbers")
             self.x.append(x + [0.0] * (3 - len(x)))
             found.append(number)
         return found
@@ -169,11 +175,18 @@ class _Reader:
                             f"expected {count} of a {kind}")  # fmt: skip
         if rows:
             self.cells.append((kind, rows))
+        if kind in SURFACE_KINDS:
+            given = source.parameters["TYPE"].upper()
+            self.shells[given] = self.shells.get(given, 0) + len(rows)
         return [*rows]
 
     def notes(self) -> list[str]:
-        """The sets without members, which are lost."""
+        """Elements that become faces, and the sets without members, which are lost."""
         return [
+            f"{count} elements of the type {given} are taken as faces, for surfaces and sets of "
+            "nodes: the mesh has no such elements"
+            for given, count in self.shells.items()
+        ] + [
             f"{kind} '{sets.names[key]}' has no members; left out"
             for kind, sets in self.sets.items()
             for key, numbers in sets.numbers.items()

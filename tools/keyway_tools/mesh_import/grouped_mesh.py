@@ -14,6 +14,7 @@ import numpy as np
 from ..deck_bytes import capitals
 from .deck_mesh import read_deck_mesh
 from .mesh_error import MeshError
+from .names import merged_names, physical_names, shared_names
 
 CORNERS = {
     "hexahedron": (0, 1, 2, 3, 4, 5, 6, 7),
@@ -73,10 +74,12 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
     refuse_cells(path, mesh)
     x = np.zeros((len(mesh.points), 3))
     x[:, : mesh.points.shape[1]] = scale * mesh.points
+    refuse_coordinates(path, x)
     found = GroupedMesh(x, *(gather(mesh, kinds) for kinds in (CORNERS, FACES)))
     origins = names_of_groups(mesh)
     groups = groups_of_cells(mesh)
     found.notes = notes + renamed_groups(origins) + lost_members(groups, mesh)
+    found.notes += shared_names(physical_of(mesh)) + merged_names(spellings(mesh))
     found.brick_groups = select(groups, mesh, CORNERS)
     found.face_groups = select(groups, mesh, FACES)
     found.node_groups = groups_of_points(mesh, groups)
@@ -89,10 +92,15 @@ def read_grouped_mesh(path: Path, scale: float = 1.0) -> GroupedMesh:
 
 def read_mesh(path: Path) -> meshio.Mesh:
     """The mesh of a file by meshio, which prints some reasons and exits. Raises MeshError."""
+    if not path.stat().st_size:
+        raise MeshError(f"{path}: not a mesh that meshio reads: the file is empty")
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(io.StringIO()):
-            return meshio.read(path)
+            mesh = meshio.read(path)
+        if path.suffix.lower() == ".msh":
+            mesh.physical_names = physical_names(path)
+        return mesh
     except SystemExit:
         lines = dict.fromkeys(line.strip() for line in said.getvalue().splitlines())
         reason = (
@@ -101,9 +109,20 @@ def read_mesh(path: Path) -> meshio.Mesh:
         )
     except KeyError as fault:  # an element names a node that is not there
         reason = f"nothing has the number or name {fault.args[0] if fault.args else ''}"
-    except Exception as fault:  # meshio raises errors of many kinds
-        reason = str(fault) or type(fault).__name__
+    except Exception:  # meshio raises errors of many kinds, whose texts are those of Python
+        reason = f"it is cut, or its contents are not those of {path.suffix}"
     raise MeshError(f"{path}: not a mesh that meshio reads: {reason}")
+
+
+def refuse_coordinates(path: Path, x: np.ndarray) -> None:
+    """Error: coordinates that are infinite or no numbers."""
+    bad = np.flatnonzero(~np.isfinite(x).all(axis=1))
+    if bad.size:
+        found = ", ".join(f"{value:g}" for value in x[bad[0]])
+        raise MeshError(
+            f"{path}: node {bad[0] + 1} in the order of the file has the coordinates {found}; "
+            "expected finite numbers"
+        )
 
 
 def refuse_cells(path: Path, mesh: meshio.Mesh) -> None:
@@ -144,6 +163,21 @@ def names_of_groups(mesh: meshio.Mesh) -> dict[str, str]:
                 "differ in letters A to Z, digits and underscores"
             )
     return origins
+
+
+def spellings(mesh: meshio.Mesh) -> dict[tuple[str, int | None], list[str]]:
+    """Names of the file by those in the deck and the dimension of their cells; points: None."""
+    found: dict[tuple[str, int | None], list[str]] = {}
+    own = [(name, None) for name, members in mesh.point_sets.items() if len(members)]
+    own += [
+        (name, DIMENSIONS[block.type])
+        for name, members in [*named_groups(mesh), *numbered_groups(mesh)]
+        for block, cells in zip(mesh.cells, members, strict=True)
+        if cells.size and block.type in DIMENSIONS
+    ]
+    for name, dimension in dict.fromkeys(own):
+        found.setdefault((deck_name(name), dimension), []).append(name.strip())
+    return found
 
 
 def renamed_groups(origins: dict[str, str]) -> list[str]:
@@ -210,6 +244,12 @@ def fits(kind: str, dimension: int | None) -> bool:
     return dimension is None or DIMENSIONS.get(kind) == dimension
 
 
+def physical_of(mesh: meshio.Mesh) -> dict[tuple[int, int], str]:
+    """Names of the numbers of a field, by number and dimension."""
+    known = {(int(number), int(dim)): name for name, (number, dim) in mesh.field_data.items()}
+    return known | getattr(mesh, "physical_names", {})
+
+
 def names_of_numbers(mesh: meshio.Mesh, data: str) -> dict[tuple[str, int | None], list[int]]:
     """Names and dimensions of the groups that a field numbers; a number without a name is its
     own."""
@@ -219,7 +259,7 @@ def names_of_numbers(mesh: meshio.Mesh, data: str) -> dict[tuple[str, int | None
             for name in own:
                 names.setdefault((name, None), []).append(int(number))
         return names
-    known = {(int(number), int(dim)): name for name, (number, dim) in mesh.field_data.items()}
+    known = physical_of(mesh)
     for block, values in zip(mesh.cells, mesh.cell_data[data], strict=True):
         dimension = DIMENSIONS.get(block.type)
         for number in {int(v) for v in np.unique(values)} - {0}:

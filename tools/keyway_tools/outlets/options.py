@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arch_stations import TooCoarseError
 from ..option_types import above_zero, count, count_from_zero
 
 
@@ -30,8 +31,8 @@ class OutletOptions:
             raise ValueError("outlets and the layers of their piers must be at least 1")
         if not 0.0 < self.sill < self.roof <= self.pier_top:
             raise ValueError(
-                "outlets must have 0 < sill < roof <= top of the piers, found "
-                f"{self.sill:g}, {self.roof:g}, {self.pier_top:g}"
+                f"--outlet-sill {self.sill:g}, --outlet-roof {self.roof:g}, --pier-top "
+                f"{self.pier_top:g}: expected 0 < sill < roof <= top of the piers"
             )
         if min(self.width, self.pier_length, self.corbel_depth) <= 0.0:
             raise ValueError("width, length of piers and depth of the corbel must be > 0")
@@ -66,6 +67,14 @@ class Layout:
         return is_corbel or (self.sill <= level < self.top and not self.is_outlet(column))
 
 
+def too_wide(count: int, width: float, block_width: float) -> str:
+    """What is wrong with outlets that are wider than their block."""
+    return (
+        f"{count} outlets of {width:g} m do not fit into a block of {block_width:.4g} m; expected "
+        "fewer --outlets or a smaller --outlet-width"
+    )
+
+
 def spans_of(count: int, width: float, block_width: float, columns: int) -> list[tuple[int, int]]:
     """Columns of `count` outlets, symmetric about the middle of the block.
 
@@ -73,15 +82,13 @@ def spans_of(count: int, width: float, block_width: float, columns: int) -> list
     metres require it. All piers have the same width in metres.
     """
     half, is_odd = columns // 2, count % 2 == 1
-    if columns % 2 or half < count + 1:
-        raise ValueError(
-            f"{count} outlets need an even number of elements across their block, at least "
-            f"{2 * (count + 1)}, found {columns}"
-        )
     pier = (block_width - count * width) / (count + 1)
     if pier <= 0.0:
-        raise ValueError(
-            f"{count} outlets of {width:g} m do not fit into a block of {block_width:.4g} m"
+        raise TooCoarseError(too_wide(count, width, block_width))
+    if columns % 2 or half < count + 1:
+        raise TooCoarseError(
+            f"{count} outlets need an even number of elements across their block, at least "
+            f"{2 * (count + 1)}, found {columns}"
         )
     steps = [pier if k % 2 == 0 else width for k in range(2 * count + 1)]
     borders = np.cumsum(steps[:count]) / (0.5 * block_width) * half  # of the left half, from 0
@@ -108,7 +115,7 @@ def layout_of(
     corbel = min(nearest(options.sill - options.corbel_depth), sill - 1)
     top = max(nearest(options.pier_top), roof)
     if corbel < 0 or top >= len(heights):
-        raise ValueError("outlets need levels below their sill and above their roof")
+        raise TooCoarseError("outlets need levels below their sill and above their roof")
     margin = 1 if spans[0][0] > 1 else 0
     return Layout(tuple(spans), (margin, columns - margin), corbel, sill, roof, top)
 
@@ -147,12 +154,13 @@ def outlet_options_of(
         return share * chosen.height if value is None else value
 
     block = (num_blocks + 1) // 2 if chosen.outlet_block is None else chosen.outlet_block
-    if block not in (int(text.split(":")[0]) for text in chosen.fine):
-        raise ValueError(f"outlets need a separate mesh: give block {block} to --fine")
+    width = 0.07 * block_width if chosen.outlet_width is None else chosen.outlet_width
+    _check_block(chosen, block, num_blocks)
+    _check_room(chosen, block, width, block_width)
     return OutletOptions(
         count=chosen.outlets,
         block=block,
-        width=0.07 * block_width if chosen.outlet_width is None else chosen.outlet_width,
+        width=width,
         sill=height(chosen.outlet_sill, 0.72),
         roof=height(chosen.outlet_roof, 0.78),
         pier_length=height(chosen.pier_length, 0.06),
@@ -160,3 +168,33 @@ def outlet_options_of(
         corbel_depth=height(chosen.corbel_depth, 0.06),
         num_layers=chosen.pier_layers,
     )
+
+
+def _check_block(chosen: argparse.Namespace, block: int, num_blocks: int) -> None:
+    """Raises ValueError for outlets in a block that cannot have them."""
+    if not 1 < block < num_blocks:
+        raise ValueError(
+            f"--outlets {chosen.outlets}: block {block} of {num_blocks} is not between two joints "
+            "and meets the rock up to the crest; expected 2 --joints or more, with an "
+            "--outlet-block between two of them"
+        )
+    if block not in (int(text.split(":")[0]) for text in chosen.fine):
+        raise ValueError(
+            f"--outlets {chosen.outlets}: block {block} has no separate mesh; expected --fine "
+            f"{block} with a --fine-above that is above the rock, as --fine-above 0.55"
+        )
+
+
+def _check_room(chosen: argparse.Namespace, block: int, width: float, block_width: float) -> None:
+    """Raises ValueError for outlets that are wider than their block, or higher than the dam."""
+    places = sorted(chosen.joint_places)
+    room = places[block - 1] - places[block - 2] if places else block_width
+    if chosen.outlets * width >= room:
+        raise ValueError(too_wide(chosen.outlets, width, room))
+    for name in ("outlet_roof", "pier_top"):
+        given = getattr(chosen, name)
+        if given is not None and given > chosen.height:
+            raise ValueError(
+                f"--{name.replace('_', '-')} {given:g}: expected at most the height of the dam, "
+                f"{chosen.height:g} m"
+            )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arch_lattice import Part, in_cells
+from ..arch_stations import TooCoarseError
 from .options import Layout, OutletOptions, layout_of
 
 DOWN, UP = 1, 2  # faces of bricks
@@ -19,13 +20,19 @@ class OutletPart(Part):
         self.first = arguments[-1]
         if any(self.foot(i) > self.bottom for i in range(self.left, self.right + 1)):
             raise ValueError(
-                f"outlets must lie above the rock: raise the height above which block "
-                f"{outlets.block} is finer"
+                f"block {outlets.block} with its outlets meets the rock where it is finer; "
+                "expected a larger --fine-above"
             )
         self.outlets = outlets
         self.layout = self._place()
         if self.layout.corbel < self.bottom:
-            raise ValueError("the corbel must lie where its block is finer: lower --fine-above")
+            # levels are rounded to elements: a finer mesh may help by a level or two
+            is_near = self.bottom - self.layout.corbel <= 2
+            raise (TooCoarseError if is_near else ValueError)(
+                f"the corbel below the outlets begins under the height above which block "
+                f"{outlets.block} is finer; expected a smaller --fine-above or --corbel-depth, or "
+                "a larger --outlet-sill"
+            )
         self._leave_out()
         self._build_downstream()
         self._drop_unused()

@@ -19,7 +19,7 @@ import sys
 from datetime import datetime
 from pathlib import Path
 
-from ..command import command
+from ..command import Parser, command
 from ..deck_runs import DeckRunner
 from ..option_types import count
 from ..pictures_material import plot_material, read_curve
@@ -36,7 +36,7 @@ EXIT_INTERRUPTED = 130
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tools/paper_study.py", description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="exit code: 0 all cases finished, 1 some did not, 2 usage, 130 interrupted",

@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 
 from ..colour_scale import Scales, parse_ranges
-from ..command import command
+from ..command import Parser, command
 from ..deck_units import open_in_si
 from ..program import command_name, reason_of
 from ..results import Results
@@ -27,7 +27,7 @@ START_OF_PAGE = 1000  # [bytes] in which a page says that it is HTML
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog=command_name("report"),
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -21,7 +21,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from keyway_tools.command import command
+from keyway_tools.command import Parser, command
 from keyway_tools.deck_runs import DeckRunner
 from keyway_tools.option_types import count
 from keyway_tools.program import command_name, given_program
@@ -57,7 +57,7 @@ def seconds(text: str) -> float:
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog=command_name("tools/accuracy"), description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
