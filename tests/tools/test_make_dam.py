@@ -92,7 +92,7 @@ def test_bad_shape_is_refused_with_a_message(tmp_path, capsys):
         ),
         (["--base-thickness", "300"], "m thick, 262.7 m from the axis of the dam; expected a long"),
         (["--extent", "20"], "elements of the rock are inside out: layers of rock cross"),
-        (["--unknowns", "100000000000"], "--unknowns 100000000000: expected at most 3000000"),
+        (["--unknowns", "100000000000"], "--unknowns 100000000000: expected at most 20000000"),
         (["--fine", "2", "--fine-above", "0.99"], "--fine-above 0.99: block 2 has no level of 12"),
         (["--motion", "nowhere.txt"], "there is no motion file 'nowhere.txt'"),
         (["--uplift", "OPEN", "--water", "0"], "--uplift needs water"),

@@ -12,7 +12,7 @@ from .arch_stations import TooCoarseError
 from .mesh_data import BrickMesh
 
 FACTORS = np.geomspace(0.25, 16.0, 97)  # of the elements along each side
-MOST_UNKNOWNS = 3_000_000  # that --unknowns takes
+MOST_UNKNOWNS = 20_000_000  # that --unknowns takes
 # A dam that is too coarse for its joints or outlets is refined up to so many unknowns, and to
 # these times what is asked for.
 SEARCHED, TIMES = 300_000, 8
