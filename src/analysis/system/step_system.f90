@@ -119,7 +119,7 @@ contains
     class(dam_system), intent(in) :: self
     real(rk), intent(in), contiguous :: v(:, :) !< (num_free, velocities)
     real(rk), intent(out) :: force(:, :) !< (num_free, velocities)
-    real(rk), allocatable :: product(:, :)
+    real(rk), allocatable :: product(:, :), columns(:, :)
     force = 0.0_rk
     if (self%damping%of_stiffness > 0.0_rk) then
       call multiply_columns(self%matrix, self%stiffness, v, force)
@@ -132,9 +132,8 @@ contains
     end if
     call self%damping%add_rest_forces(v, force)
     if (size(self%modal, 2) > 0) then
-      associate (u => self%modal(:size(v, 1), :))
-        force = force + times(u, transposed_times(u, v))
-      end associate
+      columns = self%modal(:size(v, 1), :)
+      force = force + times(columns, transposed_times(columns, v))
     end if
   end subroutine find_damping_forces
 
