@@ -182,17 +182,19 @@ contains
     integer, intent(in) :: patches(:)
     logical, intent(in) :: is_wanted(:) !< (solids)
     integer, intent(in) :: node, number
-    logical :: by_means
-    real(rk) :: own, stress(6), growth
-    integer :: k
+    real(rk) :: own
     own = value_of(stresses%node_stress(:, node), number)
     error = not_known
-    do k = 1, 2
-      by_means = k == 1
+    call take_fit(by_means=.true.)
+    call take_fit(by_means=.false.)
+  contains
+    !> Takes the distance to a fit that its stresses determine.
+    subroutine take_fit(by_means)
+      logical, intent(in) :: by_means
+      real(rk) :: stress(6), growth
       call fit_at(mesh, stresses, patches, is_wanted, by_means, node, stress, growth)
-      if (growth > largest_growth) cycle
-      error = max(error, abs(value_of(stress, number) - own))
-    end do
+      if (growth <= largest_growth) error = max(error, abs(value_of(stress, number) - own))
+    end subroutine take_fit
   end function linear_error
 
   !> The stress at a node: the mean of the linear fits of the patches with most solids.
