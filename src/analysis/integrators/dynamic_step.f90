@@ -136,7 +136,7 @@ contains
 
   !> Forces at the start of the step and the acceleration that balances them: all of them, or after
   !> another dynamic step what has changed. Supports that follow an amplitude start with its
-  !> velocity.
+  !> velocity. A state that was loaded within the step has its acceleration.
   subroutine start_forces(system, solids, model, plan, last, now, costs, error)
     type(dam_system), intent(inout) :: system
     type(solid_solver), intent(inout) :: solids
@@ -164,11 +164,11 @@ contains
       call sum_contact(system%operator, now)
       if (goes_on) then
         call keep_accelerations(last, own)
-        call change_acceleration(model, system, plan, last, now, error)
+        if (now%increment == 0) call change_acceleration(model, system, plan, last, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
         own%balanced = own%inertia + (last%balanced - last%inertia)
       else
-        call start_anew(model, system, plan, now, error)
+        if (now%increment == 0) call start_anew(model, system, plan, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
         own%balanced = own%inertia
       end if

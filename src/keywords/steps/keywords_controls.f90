@@ -118,8 +118,8 @@ contains
               field('MODAL', kind_flag, 'the ratio is that of modes'), &
               field('MODES', kind_integer, 'number of damped modes; those with the frequency '// &
                     'of the last one are damped, too', lowest=1.0_rk), &
-              field('HIGHEST', kind_real, 'in place of MODES: modes up to this frequency', 'Hz', &
-                    lowest=0.0_rk, excludes_lowest=.true.)])
+              field('HIGHEST', kind_real, 'highest frequency of damped modes, in place of '// &
+                    'MODES', 'Hz', lowest=0.0_rk, excludes_lowest=.true.)])
   end subroutine describe_step_damping
 
   subroutine read_step_damping(this, model, faults)
