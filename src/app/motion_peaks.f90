@@ -13,8 +13,8 @@ module motion_peaks
 
 contains
 
-  !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion, without units where the deck is
-  !> not in metres and seconds; '' of other loads.
+  !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion that acts, without units where the
+  !> deck is not in metres and seconds; '' of other loads.
   pure function peak_of_motion(model, number, work) result(text)
     type(problem), intent(in) :: model
     integer, intent(in) :: number !< of the step
@@ -24,7 +24,10 @@ contains
     text = ''
     select type (motion => model%loads(work%load)%item)
     type is (base_motion)
-      if (work%amplitude == 0) then
+      if (.not. model%steps(number)%procedure%has_inertia) then
+        text = ', without effect in this step: no inertia'
+        return
+      else if (work%amplitude == 0) then
         text = ', constant '//in_units(model, abs(work%end_factor))
         return
       end if

@@ -115,6 +115,7 @@ set(sources
   verify_blocks.f90
   verify_elements.f90
   verify_model.f90
+  verify_precision.f90
   verify_reduced.f90
   verify_ties.f90
 )

@@ -10,6 +10,7 @@ module verify_model
   use sorted_lists, only: contains_position
   use verify_blocks, only: verify_free_blocks
   use verify_elements, only: refuse_inverted, warn_of_corners
+  use verify_precision, only: verify_precisions
   use verify_reduced, only: verify_reduced_steps
   use verify_ties, only: verify_tied_parts
   use write_text, only: as_text
@@ -29,6 +30,7 @@ contains
     call verify_modes(model, faults)
     call verify_velocities(model, faults)
     call verify_reduced_steps(model, faults)
+    call verify_precisions(model, faults)
     if (.not. faults%has_errors()) call verify_weight(model, faults)
     if (.not. faults%has_errors()) call verify_supports(model, faults)
     if (.not. faults%has_errors()) call verify_tied_parts(model, faults)

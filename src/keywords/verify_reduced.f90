@@ -8,7 +8,7 @@ module verify_reduced
   use step_plan, only: step
   implicit none
   private
-  public :: verify_reduced_steps
+  public :: verify_reduced_steps, first_nonlinear
 
   character(*), parameter :: remedy = '*DYNAMIC without REDUCED'
 
@@ -43,23 +43,29 @@ contains
     end do
   end subroutine verify_reduced_steps
 
-  !> Solids that crack or yield; materials that no element has are warned of elsewhere.
+  !> Solids that crack or yield.
   subroutine refuse_solids(model, s, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
     type(diagnostic_list), intent(inout) :: faults
     integer :: i
-    do i = 1, size(model%problem%materials)
-      associate (material => model%problem%materials(i))
-        if (.not. allocated(material%law)) cycle
-        if (.not. material%law%is_nonlinear) cycle
-        if (.not. any(model%problem%mesh%material_of_element == i)) cycle
-        call refuse(model, s, 'material '//material%name//' is not linear elastic, and a '// &
-                    'reduced model holds linear elastic solids with joints', faults)
-        return
-      end associate
-    end do
+    i = first_nonlinear(model)
+    if (i > 0) call refuse(model, s, 'material '//model%problem%materials(i)%name// &
+                           ' is not linear elastic, and a reduced model holds linear elastic '// &
+                           'solids with joints', faults)
   end subroutine refuse_solids
+
+  !> The first material of an element that cracks or yields; 0 where none does. Materials that no
+  !> element has are warned of elsewhere.
+  pure integer function first_nonlinear(model) result(first)
+    type(draft), intent(in) :: model
+    do first = 1, size(model%problem%materials)
+      if (.not. allocated(model%problem%materials(first)%law)) cycle
+      if (.not. model%problem%materials(first)%law%is_nonlinear) cycle
+      if (any(model%problem%mesh%material_of_element == first)) return
+    end do
+    first = 0
+  end function first_nonlinear
 
   !> Elements that are not there yet.
   subroutine refuse_stages(model, s, faults)

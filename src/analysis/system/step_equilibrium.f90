@@ -44,9 +44,6 @@ contains
     name = plan%controls%joint_solver
     if (name == 'AUTO') name = condensed_solver
     if (.not. is_symmetric) name = full_solver
-    call check_precision(plan, is_symmetric, name == full_solver .and. &
-                         system%operator%num_points > 0, size(system%modal, 2) > 0, error)
-    if (allocated(error)) return
     if (system%operator%num_points == 0) then
       allocate (linear_equilibrium :: balance)
     else
@@ -66,28 +63,6 @@ contains
     if (allocated(error)) return
     call balance%factor%analyse(system%matrix, error)
   end subroutine make_equilibrium
-
-  !> Refuses a factor in single precision where it would not be used.
-  subroutine check_precision(plan, is_symmetric, is_full, has_modes, error)
-    type(step), intent(in) :: plan
-    logical, intent(in) :: is_symmetric !< the tangent of the solids
-    logical, intent(in) :: is_full !< the tangent of joints is factored in each iteration
-    logical, intent(in) :: has_modes !< modal damping adds a matrix of low rank to the factor
-    type(error_type), allocatable, intent(out) :: error
-    character(:), allocatable :: name
-    if (plan%controls%precision == 'MIXED' .and. has_modes) then
-      call raise(error, "step '"//plan%name//"': *CONTROLS, PRECISION=MIXED does not work with "// &
-                 '*DAMPING, MODAL: leave PRECISION=MIXED out, or name PRECISION=SINGLE')
-      return
-    end if
-    if (plan%controls%precision == 'DOUBLE' .or. (is_symmetric .and. .not. is_full)) return
-    name = 'PRECISION='//trim(plan%controls%precision)
-    call raise(error, "step '"//plan%name//"': *CONTROLS, "//name//' works with a factor of '// &
-               'a symmetric matrix that is kept for many solves; '// &
-               trim(merge('JOINT SOLVER=FULL factors in each iteration ', &
-                          'the tangent of the solids is not symmetric  ', is_full))// &
-               ': leave '//name//' out')
-  end subroutine check_precision
 
   !> Checks that the memory of the dense matrices of the joints is available, by allocating and
   !> freeing it.

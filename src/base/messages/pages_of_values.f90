@@ -19,8 +19,8 @@ contains
                   'exclude each other|has both|not both|goes with|go with|does not belong '// &
                   'to|has no meaning|not go with|is given with |a history for a file|several '// &
                   'materials|expected either |has ADJUST|a joint with a GAP|in a step *|the '// &
-                  'model has a *TIE|the model has an *INTERFACE|is LUMPED|a second inelastic '// &
-                  'law|ends the step earlier', &
+                  'model has a *TIE|the model has an *INTERFACE|is LUMPED|MASS=LUMPED|a second '// &
+                  'inelastic law|ends the step earlier', &
                   'Two choices contradict each other, or one of them has no meaning beside the '// &
                   'other.', &
                   'Keep the one that was meant. keyway --keywords NAME says what goes with '// &

@@ -250,7 +250,7 @@ contains
     type(later_steps), intent(in) :: now
     type(diagnostic_list), intent(inout) :: faults
     type(field_reader) :: reader
-    character(:), allocatable :: name
+    character(:), allocatable :: name, absent
     if (index(requests, ' '//this%spec%name//' ') == 0) return
     if (.not. now%any_moves) then
       call this%warn(faults, 'has no effect: a step *FREQUENCY writes its modes, and no '// &
@@ -258,11 +258,16 @@ contains
       return
     end if
     if (now%any_inertia .or. index(this%spec%name, 'NODE') == 0) return
+    absent = ''
     do while (reader%advance(this))
       name = field_of_word(this%word_at(reader%line, reader%field))
       if (name /= 'V' .and. name /= 'A') cycle
-      call this%warn(faults, 'there is no '//name//no_dynamic)
-      return
+      if (absent == '') then
+        absent = name
+      else if (absent /= name) then
+        absent = 'V and no A'
+      end if
     end do
+    if (absent /= '') call this%warn(faults, 'there is no '//absent//no_dynamic)
   end subroutine warn_of_requests
 end module check_idle_steps

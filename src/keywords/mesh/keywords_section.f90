@@ -28,8 +28,8 @@ contains
     allocate (spec%parameters, source=[ &
               field('ELSET', kind_word, 'the elements', is_required=.true.), &
               field('MATERIAL', kind_word, 'their material', is_required=.true.), &
-              field('MASS', kind_choice, 'mass matrix', default='CONSISTENT', &
-                    choices='CONSISTENT | LUMPED'), &
+              field('MASS', kind_choice, 'mass matrix of the whole model; CONSISTENT where no '// &
+                    'section has MASS', choices='CONSISTENT | LUMPED'), &
               field('CONTROLS', kind_word, 'of Abaqus', has_no_effect=.true.)])
     allocate (spec%columns, source=[ &
               field('thickness', kind_real, 'thickness, not used for solids')])
@@ -56,17 +56,26 @@ contains
     call give_material(this, new%elements, num_material, model, faults)
   end subroutine read_solid_section
 
-  !> Checks that all sections give the same MASS.
+  !> Checks that all sections give the same MASS. One without it has that of the others, which may
+  !> not be meant where it is not the usual one.
   subroutine choose_mass(this, model, faults)
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    if (.not. this%has('MASS')) return
+    if (.not. this%has('MASS')) then
+      if (model%problem%has_lumped_mass) call this%warn( &
+        faults, 'MASS=LUMPED of another section acts on these elements, too', &
+        'MASS in all sections')
+      return
+    end if
     if (allocated(model%mass_kind)) then
       if (model%mass_kind /= this%word('MASS')) then
         call this%fault_parameter(faults, 'MASS', 'the mass of another section is '// &
                                   model%mass_kind, 'one kind of mass in the whole model')
       end if
+    else if (model%num_sections > 0 .and. this%word('MASS') == 'LUMPED') then
+      call this%warn(faults, 'MASS=LUMPED acts on the elements of all sections', &
+                     'MASS in all sections')
     end if
     model%mass_kind = this%word('MASS')
     model%problem%has_lumped_mass = model%mass_kind == 'LUMPED'

@@ -55,7 +55,8 @@ contains
                     'precision until the residual is admissible; with MIXED it takes half '// &
                     'as much memory again, for a copy in single precision, which solves for '// &
                     'what changes from increment to increment of *DYNAMIC while its errors '// &
-                    'are admissible; symmetric matrices only', &
+                    'are admissible; neither with JOINT SOLVER=FULL nor with '// &
+                    'TANGENT=CONSISTENT, MIXED not with *DAMPING, MODAL', &
                     default='DOUBLE', choices='DOUBLE | SINGLE | MIXED'), &
               field('JOINT FORCES', kind_choice, 'weight of joint forces in time: the impulse '// &
                     'of the end of the step, as the bulk, or end of the step', &
