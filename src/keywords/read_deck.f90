@@ -44,6 +44,7 @@ module read_deck
   use keyword_spec, only: keyword, without_effect
   use keywords_elements, only: make_room_for_elements, trim_mesh
   use keywords_nodes, only: make_room_for_nodes
+  use keywords_section, only: echo_mass
   use load_cards, only: list_load_cards, load_card_list
   use model_draft, only: draft
   use umat_loader, only: user_library
@@ -90,6 +91,7 @@ contains
     if (.not. (model%options%is_for_tests .or. faults%has_errors())) then
       call digests_of_cards(model%cards, model%problem%cards)
     end if
+    call echo_mass(model)
     call move_alloc(model%problem, full_problem)
     echo = echo_of_cards(model%cards)
   end subroutine read_problem

@@ -1,6 +1,7 @@
 !> *SOLID SECTION.
 module keywords_section
   use deck_card, only: card
+  use deck_scan, only: is_keyword
   use diagnostics, only: diagnostic_list
   use element_catalogue, only: is_solid
   use keyword_spec, only: keyword, field, kind_choice, kind_real, kind_word
@@ -9,7 +10,7 @@ module keywords_section
   use write_text, only: as_text
   implicit none
   private
-  public :: describe_solid_section, read_solid_section
+  public :: describe_solid_section, read_solid_section, echo_mass
 
   character, parameter :: nl = new_line('a')
 
@@ -28,8 +29,8 @@ contains
     allocate (spec%parameters, source=[ &
               field('ELSET', kind_word, 'the elements', is_required=.true.), &
               field('MATERIAL', kind_word, 'their material', is_required=.true.), &
-              field('MASS', kind_choice, 'mass matrix of the whole model; CONSISTENT where no '// &
-                    'section has MASS', choices='CONSISTENT | LUMPED'), &
+              field('MASS', kind_choice, 'mass matrix of the whole model, that of the sections '// &
+                    'with MASS', default='CONSISTENT', choices='CONSISTENT | LUMPED'), &
               field('CONTROLS', kind_word, 'of Abaqus', has_no_effect=.true.)])
     allocate (spec%columns, source=[ &
               field('thickness', kind_real, 'thickness, not used for solids')])
@@ -80,6 +81,21 @@ contains
     model%mass_kind = this%word('MASS')
     model%problem%has_lumped_mass = model%mass_kind == 'LUMPED'
   end subroutine choose_mass
+
+  !> Sections without MASS have that of the others in the echo of the deck, too.
+  subroutine echo_mass(model)
+    type(draft), intent(inout) :: model
+    integer :: i, k
+    if (.not. model%problem%has_lumped_mass) return
+    do i = 1, size(model%cards)
+      if (.not. is_keyword(model%cards(i), 'SOLID SECTION')) cycle
+      associate (parameters => model%cards(i)%spec%parameters)
+        do k = 1, size(parameters)
+          if (parameters(k)%name == 'MASS') parameters(k)%default = model%mass_kind
+        end do
+      end associate
+    end do
+  end subroutine echo_mass
 
   subroutine give_material(this, elements, num_material, model, faults)
     type(card), intent(in) :: this
