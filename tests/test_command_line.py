@@ -108,6 +108,30 @@ def test_check_lists_what_each_step_inherits(program_path: Path, tmp_path: Path)
     assert [int(x.split()[1]) for x in supports] == [13, 13, 12, 12]
 
 
+def test_check_says_how_a_load_changes(program_path: Path, tmp_path: Path) -> None:
+    """By an amplitude, by a ramp, or at once where there is inertia. It then keeps its value."""
+    cards = "*AMPLITUDE, NAME=PULSE\n0., 0., 0.1, 3.\n"
+    model = BLOCK[: BLOCK.index("*STEP")] + cards
+    weight = "*DLOAD{}\nBLOCK, GRAV, {}, 0., 0., -1.\n"
+    steps = [
+        "*STATIC\n" + weight.format("", "9.81"),
+        "*DYNAMIC, DIRECT\n0.01, 0.1\n" + weight.format("", "10."),
+        "*DYNAMIC, DIRECT\n0.01, 0.1\n" + weight.format(", AMPLITUDE=PULSE", "2."),
+        "*DYNAMIC, DIRECT\n0.01, 0.1\n",
+    ]
+    deck = model + "".join(f"*STEP\n{step}*END STEP\n" for step in steps)
+    (tmp_path / "block.inp").write_text(deck)
+    done = run(program_path, tmp_path, "--check", "block.inp")
+    assert done.returncode == 0, done.stderr
+    lines = steps_of(done.stdout).values()
+    assert [[x.split(": ", 1)[1] for x in step if x.startswith("load ")] for step in lines] == [
+        ["factor 0 to 9.81"],
+        ["factor 10 from the start, 9.81 before"],
+        ["factor 2 times amplitude PULSE"],
+        ["factor 6"],
+    ]
+
+
 def test_prints_of_a_step_replace_those_of_their_kind(program_path: Path, tmp_path: Path) -> None:
     """The first *NODE PRINT of a step ends those of earlier steps; further ones are added."""
     base = "*NODE PRINT, NSET=BASE OF IT"

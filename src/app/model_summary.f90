@@ -3,8 +3,8 @@ module model_summary
   use dam_mesh, only: fe_mesh, named_set
   use joint_points, only: dam_joint
   use kinds, only: rk
+  use load_action, only: action_of_load
   use material_law, only: material
-  use motion_peaks, only: peak_of_motion
   use problem_definition, only: problem
   use step_plan, only: step, step_damping, step_load
   use text_buffers, only: text_buffer
@@ -306,12 +306,8 @@ contains
     integer, intent(in) :: number !< of the step
     type(step_load), intent(in) :: work
     character(:), allocatable :: text
-    text = row('load '//as_text(work%load), model%loads(work%load)%item%name//': factor '// &
-               as_text(work%start_factor)//' to '//as_text(work%end_factor))
-    if (work%amplitude > 0) then
-      text = text//', amplitude '//model%amplitudes(work%amplitude)%name
-    end if
-    text = text//peak_of_motion(model, number, work)
+    text = row('load '//as_text(work%load), model%loads(work%load)%item%name//': '// &
+               action_of_load(model, number, work))
   end function work_of
 
   pure function procedure_of(now) result(text)

@@ -7,9 +7,9 @@ set(sources
   forecast/machine_speed.f90
   forecast/run_file_sizes.f90
   forecast/run_forecast.f90
+  load_action.f90
   main.f90
   model_summary.f90
-  motion_peaks.f90
   option_table.f90
   run_analysis.f90
   run_material.f90

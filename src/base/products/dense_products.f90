@@ -7,7 +7,8 @@ module dense_products
   private
   public :: times, transposed_times, subtract_times, times_vector, transposed_times_vector, &
             single_times_vector, transposed_single_times_vector, &
-            add_times_vector, add_single_times_vector
+            add_times_vector, add_single_times_vector, &
+            add_transposed_times, add_transposed_single_times
 
   ! The arguments are those of the BLAS.
   ! allow(assumed-size)
@@ -28,8 +29,8 @@ module dense_products
       character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy
       real(rk), intent(in) :: alpha, beta
-      real(rk), intent(in) :: a(lda, *), x(n)
-      real(rk), intent(inout) :: y(m)
+      real(rk), intent(in) :: a(lda, *), x(*)
+      real(rk), intent(inout) :: y(*)
     end subroutine dgemv
 
     subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
@@ -115,6 +116,28 @@ contains
     if (size(a) == 0) return
     call dgemv('T', size(a, 1), size(a, 2), 1.0_rk, a, size(a, 1), x, 1, 0.0_rk, product, 1)
   end function transposed_times_vector
+
+  !> y = y + A^T x, with x on some adjacent rows alone.
+  subroutine add_transposed_times(rows, a, first, x, y)
+    integer, intent(in) :: rows !< of A
+    real(rk), intent(in), contiguous :: x(:)
+    real(rk), intent(inout), contiguous :: y(:) !< (columns)
+    real(rk), intent(in) :: a(rows, size(y))
+    integer, intent(in) :: first !< row of x(1)
+    if (size(y) > 0) call dgemv('T', size(x), size(y), 1.0_rk, a(first, 1), rows, x, 1, &
+                                1.0_rk, y, 1)
+  end subroutine add_transposed_times
+
+  !> y = y + A^T x in single precision, with x on some adjacent rows alone.
+  subroutine add_transposed_single_times(rows, a, first, x, y)
+    integer, intent(in) :: rows !< of A
+    real(single), intent(in), contiguous :: x(:)
+    real(single), intent(inout), contiguous :: y(:) !< (columns)
+    real(single), intent(in) :: a(rows, size(y))
+    integer, intent(in) :: first !< row of x(1)
+    if (size(y) > 0) call sgemv('T', size(x), size(y), 1.0_single, a(first, 1), rows, x, 1, &
+                                1.0_single, y, 1)
+  end subroutine add_transposed_single_times
 
   !> A x with A and the sums in single precision.
   function single_times_vector(a, x) result(product)

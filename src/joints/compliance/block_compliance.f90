@@ -4,7 +4,7 @@
 !> Vectors have the rows of all points, in the order of the points. On several ranks each rank holds
 !> the rows of its own groups, and the couplings of all.
 module block_compliance
-  use coupling_block, only: dense_block, make_block, transpose_block
+  use coupling_block, only: dense_block, make_block
   use kinds, only: rk, long
   use learned_response, only: response_memory
   use point_groups, only: group_list
@@ -19,12 +19,15 @@ module block_compliance
 
   type :: compliance_blocks
     type(group_list) :: groups
-    type(dense_block), allocatable :: block(:, :) !< (groups with jumps, groups with forces)
+    !> (groups with jumps, groups with forces). Where one of (j, k) and (k, j) is not there, it is
+    !> the other one transposed: each block between groups is read for both directions.
+    type(dense_block), allocatable :: block(:, :)
     !> Largest coupling that is left out, in blocks or in their accuracy; huge if it is not known
     real(rk) :: left_out = 0.0_rk
     type(response_memory) :: learned !< of what is left out
   contains
-    procedure :: start, put, put_coupling, product, couple, learn, num_entries, as_dense
+    procedure :: start, put, put_coupling, has_block, add_block, product, couple, learn
+    procedure :: num_entries, as_dense
   end type compliance_blocks
 
 contains
@@ -40,7 +43,7 @@ contains
     allocate (self%block(groups%num_groups, groups%num_groups))
   end subroutine start
 
-  !> Puts a block and its transpose if groups are coupled by it.
+  !> Puts a block if groups are coupled by it.
   subroutine put_coupling(self, j, k, scale, values, smallest)
     class(compliance_blocks), intent(inout) :: self
     integer, intent(in) :: j, k !< groups
@@ -53,7 +56,7 @@ contains
     if (coupling >= smallest) call self%put(j, k, coupling, values, smallest*size_of_both)
   end subroutine put_coupling
 
-  !> Puts a block and its transpose.
+  !> Puts a block, which is there for both directions.
   subroutine put(self, j, k, coupling, values, allowed)
     class(compliance_blocks), intent(inout) :: self
     integer, intent(in) :: j, k !< groups
@@ -61,7 +64,7 @@ contains
     real(rk), intent(in) :: values(:, :) !< [m/N]
     real(rk), intent(in) :: allowed !< norm of the error; 0 for none [m/N]
     call make_block(values, coupling, allowed, self%block(j, k))
-    if (j /= k) call transpose_block(self%block(j, k), self%block(k, j))
+    self%block(k, j)%coupling = coupling
   end subroutine put
 
   !> Takes the blocks that matter from a dense compliance, to the accuracy that matters. A block is
@@ -128,6 +131,27 @@ contains
     own_size = norm2(rest)
   end function own_size
 
+  !> Whether there is a block between two groups.
+  pure logical function has_block(self, j, k)
+    class(compliance_blocks), intent(in) :: self
+    integer, intent(in) :: j, k !< groups
+    has_block = self%block(j, k)%is_there() .or. self%block(k, j)%is_there()
+  end function has_block
+
+  !> Adds the jumps of group j by forces on group k.
+  subroutine add_block(self, j, k, x, y, is_rough)
+    class(compliance_blocks), intent(in) :: self
+    integer, intent(in) :: j, k !< groups
+    real(rk), intent(in), contiguous :: x(:) !< (rows of k) [N]
+    real(rk), intent(inout), contiguous :: y(:) !< (rows of j) [m]
+    logical, intent(in) :: is_rough !< some digits are enough
+    if (self%block(j, k)%is_there()) then
+      call self%block(j, k)%add_to(x, y, is_rough)
+    else
+      call self%block(k, j)%add_transposed_to(x, y, is_rough)
+    end if
+  end subroutine add_block
+
   !> y = G x with what is known of the blocks that are left out.
   subroutine product(self, x, y)
     class(compliance_blocks), intent(in) :: self
@@ -147,23 +171,14 @@ contains
     call self%learned%learn(x, y - known)
   end subroutine learn
 
-  !> y = G x with the blocks alone. The sums have a fixed order, whatever the number of threads.
+  !> y = G x with the blocks alone.
   subroutine multiply_blocks(self, x, y)
     class(compliance_blocks), intent(in) :: self
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(out) :: y(:) !< (rows) [m]
-    real(rk) :: sorted_x(size(x)), sorted_y(size(y))
-    integer :: j
-    sorted_x = x(self%groups%row)
-    if (self%groups%is_divided()) sorted_y = 0.0_rk
-    !$omp parallel do schedule(dynamic) default(none) shared(self, sorted_x, sorted_y) &
-    !$omp if (self%groups%are_worth_threads())
-    do j = 1, self%groups%num_groups
-      if (self%groups%is_here(j)) call move_group(self, j, sorted_x, sorted_y)
-    end do
-    !$omp end parallel do
-    if (self%groups%is_divided()) call add_over_ranks(sorted_y)
-    y(self%groups%row) = sorted_y
+    logical :: all_parts(self%groups%num_groups, self%groups%num_groups)
+    all_parts = .true.
+    call multiply_some(self, all_parts, .false., x, y)
   end subroutine multiply_blocks
 
   !> y = G x roughly, with some of the blocks.
@@ -172,42 +187,39 @@ contains
     logical, intent(in) :: takes_part(:, :) !< (groups with jumps, groups with forces)
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(out) :: y(:) !< (rows) [m]
+    call multiply_some(self, takes_part, .true., x, y)
+  end subroutine couple
+
+  !> y = G x with some of the blocks. The sums have a fixed order, whatever the number of threads.
+  subroutine multiply_some(self, takes_part, is_rough, x, y)
+    class(compliance_blocks), intent(in) :: self
+    logical, intent(in) :: takes_part(:, :) !< (groups with jumps, groups with forces)
+    logical, intent(in) :: is_rough !< some digits are enough
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(out) :: y(:) !< (rows) [m]
     real(rk) :: sorted_x(size(x)), sorted_y(size(y))
     integer :: j
     sorted_x = x(self%groups%row)
     if (self%groups%is_divided()) sorted_y = 0.0_rk
     !$omp parallel do schedule(dynamic) default(none) &
-    !$omp shared(self, takes_part, sorted_x, sorted_y) if (self%groups%are_worth_threads())
+    !$omp shared(self, takes_part, is_rough, sorted_x, sorted_y) &
+    !$omp if (self%groups%are_worth_threads())
     do j = 1, self%groups%num_groups
-      if (self%groups%is_here(j)) call move_roughly(self, j, takes_part(j, :), sorted_x, sorted_y)
+      if (self%groups%is_here(j)) then
+        call move_group(self, j, takes_part(j, :), is_rough, sorted_x, sorted_y)
+      end if
     end do
     !$omp end parallel do
     if (self%groups%is_divided()) call add_over_ranks(sorted_y)
     y(self%groups%row) = sorted_y
-  end subroutine couple
+  end subroutine multiply_some
 
-  !> Rows of G x of one group; x and y group by group.
-  subroutine move_group(self, group, x, y)
-    class(compliance_blocks), intent(in) :: self
-    integer, intent(in) :: group
-    real(rk), intent(in) :: x(:) !< (rows) [N]
-    real(rk), intent(inout) :: y(:) !< (rows) [m]
-    integer :: k
-    associate (first => self%groups%first_row)
-      associate (own => y(first(group):first(group + 1) - 1))
-        own = 0.0_rk
-        do k = 1, self%groups%num_groups
-          call self%block(group, k)%add_to(x(first(k):first(k + 1) - 1), own)
-        end do
-      end associate
-    end associate
-  end subroutine move_group
-
-  !> Rows of G x of one group, roughly.
-  subroutine move_roughly(self, group, takes_part, x, y)
+  !> Rows of G x of one group, with some of the blocks; x and y group by group.
+  subroutine move_group(self, group, takes_part, is_rough, x, y)
     class(compliance_blocks), intent(in) :: self
     integer, intent(in) :: group
     logical, intent(in) :: takes_part(:) !< (groups with forces)
+    logical, intent(in) :: is_rough !< some digits are enough
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(inout) :: y(:) !< (rows) [m]
     integer :: k
@@ -216,11 +228,11 @@ contains
         moved = 0.0_rk
         do k = 1, self%groups%num_groups
           if (.not. takes_part(k)) cycle
-          call self%block(group, k)%add_roughly(x(first(k):first(k + 1) - 1), moved)
+          call self%add_block(group, k, x(first(k):first(k + 1) - 1), moved, is_rough)
         end do
       end associate
     end associate
-  end subroutine move_roughly
+  end subroutine move_group
 
   !> G with zeros for the blocks that are left out.
   pure function as_dense(self) result(dense)
@@ -230,13 +242,16 @@ contains
     allocate (dense(size(self%groups%row), size(self%groups%row)), source=0.0_rk)
     do k = 1, self%groups%num_groups
       do j = 1, self%groups%num_groups
-        if (.not. self%block(j, k)%is_there()) cycle
-        dense(self%groups%rows(j), self%groups%rows(k)) = self%block(j, k)%as_values()
+        if (self%block(j, k)%is_there()) then
+          dense(self%groups%rows(j), self%groups%rows(k)) = self%block(j, k)%as_values()
+        else if (self%block(k, j)%is_there()) then
+          dense(self%groups%rows(j), self%groups%rows(k)) = transpose(self%block(k, j)%as_values())
+        end if
       end do
     end do
   end function as_dense
 
-  !> Entries of all blocks.
+  !> Entries of all blocks that are kept.
   pure integer(long) function num_entries(self)
     class(compliance_blocks), intent(in) :: self
     integer :: j, k

@@ -2,18 +2,21 @@
 !> or as a product of two narrow matrices.
 !>
 !> The product of a block takes the time of reading it. A block of weak coupling is therefore kept
-!> in single precision.
+!> in single precision, and once for both directions: A x are the jumps of the first group, A^T x
+!> those of the second by forces of the first.
 !>
 !> Groups that do not touch each other see only what is smooth in each other's forces: a block of
 !> some hundred rows has the rank of some ten to any accuracy that counts.
 module coupling_block
   use, intrinsic :: iso_fortran_env, only: single => real32
-  use dense_products, only: add_single_times_vector, add_times_vector, single_times_vector, &
-                            transposed_single_times_vector, transposed_times_vector
+  use dense_products, only: add_single_times_vector, add_times_vector, &
+                            add_transposed_single_times, add_transposed_times, &
+                            single_times_vector, transposed_single_times_vector, &
+                            transposed_times_vector
   use kinds, only: rk, long
   implicit none
   private
-  public :: dense_block, make_block, transpose_block, add_product
+  public :: dense_block, make_block, add_product
 
   type :: dense_block
     real(rk) :: coupling = 0.0_rk !< size, relative to the own blocks of both groups
@@ -25,11 +28,12 @@ module coupling_block
     real(single), allocatable :: left(:, :), right(:, :)
     integer :: rough_rank = 0 !< of so many columns it is so roughly
   contains
-    procedure :: is_there, add_to, add_roughly, as_values, num_entries
+    procedure :: is_there, add_to, add_transposed_to, as_values, num_entries
+    procedure, private :: rank_of_product
   end type dense_block
 
-  !> Columns without forces between others that a product takes along.
-  integer, parameter :: longest_gap = 4
+  !> Columns or rows without forces between others that a product takes along.
+  integer, parameter :: longest_gap = 4, longest_gap_of_rows = 12
   !> Blocks of stronger coupling are those of neighbours, whose rank is high.
   real(rk), parameter :: most_coupling = 1.0e-2_rk
   integer, parameter :: few_steps = 8 !< until lengths that were updated are computed again
@@ -175,46 +179,54 @@ contains
     is_there = allocated(self%values) .or. allocated(self%rounded) .or. allocated(self%left)
   end function is_there
 
-  !> The block of the forces on the first group that move the second.
-  pure subroutine transpose_block(block, turned)
-    type(dense_block), intent(in) :: block
-    type(dense_block), intent(out) :: turned
-    turned%coupling = block%coupling
-    if (allocated(block%values)) turned%values = transpose(block%values)
-    if (allocated(block%rounded)) turned%rounded = transpose(block%rounded)
-    if (.not. allocated(block%left)) return
-    turned%left = block%right
-    turned%right = block%left
-    turned%rough_rank = block%rough_rank
-  end subroutine transpose_block
-
-  !> y = y + A x.
-  subroutine add_to(self, x, y)
+  !> y = y + A x, to some digits in the shortest time where that is enough.
+  subroutine add_to(self, x, y, is_rough)
     class(dense_block), intent(in) :: self
     real(rk), intent(in), contiguous :: x(:) ! [N]
     real(rk), intent(inout), contiguous :: y(:) ! [m]
-    if (allocated(self%values)) then
+    logical, intent(in) :: is_rough
+    integer :: rank
+    rank = self%rank_of_product(is_rough)
+    if (rank > 0) then
+      y = y + single_times_vector(self%left(:, :rank), &
+                                  transposed_single_times_vector(self%right(:, :rank), x))
+    else if (allocated(self%values)) then
       call add_product(self%values, x, y)
     else if (allocated(self%rounded)) then
       call add_rounded(self%rounded, x, y)
-    else if (allocated(self%left)) then
-      y = y + single_times_vector(self%left, transposed_single_times_vector(self%right, x))
     end if
   end subroutine add_to
 
-  !> y = y + A x to some digits, in the shortest time.
-  subroutine add_roughly(self, x, y)
+  !> y = y + A^T x, to some digits in the shortest time where that is enough.
+  subroutine add_transposed_to(self, x, y, is_rough)
     class(dense_block), intent(in) :: self
     real(rk), intent(in), contiguous :: x(:) ! [N]
     real(rk), intent(inout), contiguous :: y(:) ! [m]
-    if (.not. allocated(self%left)) then
-      call self%add_to(x, y)
-      return
+    logical, intent(in) :: is_rough
+    integer :: rank
+    rank = self%rank_of_product(is_rough)
+    if (rank > 0) then
+      y = y + single_times_vector(self%right(:, :rank), &
+                                  transposed_single_times_vector(self%left(:, :rank), x))
+    else if (allocated(self%values)) then
+      call add_transposed_product(self%values, x, y)
+    else if (allocated(self%rounded)) then
+      call add_transposed_rounded(self%rounded, x, y)
     end if
-    associate (left => self%left(:, :self%rough_rank), right => self%right(:, :self%rough_rank))
-      y = y + single_times_vector(left, transposed_single_times_vector(right, x))
-    end associate
-  end subroutine add_roughly
+  end subroutine add_transposed_to
+
+  !> Columns of the two narrow matrices that a product takes; 0 where it takes all entries.
+  pure integer function rank_of_product(self, is_rough) result(rank)
+    class(dense_block), intent(in) :: self
+    logical, intent(in) :: is_rough
+    rank = 0
+    if (.not. allocated(self%left)) return
+    if (is_rough) then
+      rank = self%rough_rank
+    else if (.not. (allocated(self%values) .or. allocated(self%rounded))) then
+      rank = size(self%left, 2)
+    end if
+  end function rank_of_product
 
   pure function as_values(self) result(values)
     class(dense_block), intent(in) :: self
@@ -245,7 +257,7 @@ contains
     integer :: first, last
     last = 0
     do
-      call find_columns(x, last, first)
+      call find_forces(x, longest_gap, last, first)
       if (first > last) exit
       call add_times_vector(a(:, first:last), x(first:last), y)
     end do
@@ -262,17 +274,50 @@ contains
     sums = 0.0_single
     last = 0
     do
-      call find_columns(x, last, first)
+      call find_forces(x, longest_gap, last, first)
       if (first > last) exit
       call add_single_times_vector(a(:, first:last), forces(first:last), sums)
     end do
     y = y + real(sums, rk)
   end subroutine add_rounded
 
-  !> The next columns with x not zero and without long gaps; none where first > last.
-  pure subroutine find_columns(x, last, first)
+  !> y = y + A^T x with the rows whose x is not zero.
+  subroutine add_transposed_product(a, x, y)
+    real(rk), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in), contiguous :: x(:)
+    real(rk), intent(inout), contiguous :: y(:)
+    integer :: first, last
+    last = 0
+    do
+      call find_forces(x, longest_gap_of_rows, last, first)
+      if (first > last) exit
+      call add_transposed_times(size(a, 1), a, first, x(first:last), y)
+    end do
+  end subroutine add_transposed_product
+
+  !> The same with A and the sums in single precision.
+  subroutine add_transposed_rounded(a, x, y)
+    real(single), intent(in), contiguous :: a(:, :)
+    real(rk), intent(in), contiguous :: x(:)
+    real(rk), intent(inout), contiguous :: y(:)
+    real(single) :: forces(size(x)), sums(size(y))
+    integer :: first, last
+    forces = real(x, single)
+    sums = 0.0_single
+    last = 0
+    do
+      call find_forces(x, longest_gap_of_rows, last, first)
+      if (first > last) exit
+      call add_transposed_single_times(size(a, 1), a, first, forces(first:last), sums)
+    end do
+    y = y + real(sums, rk)
+  end subroutine add_transposed_rounded
+
+  !> The next forces that are not zero and have no long gaps between them; none where first > last.
+  pure subroutine find_forces(x, longest, last, first)
     real(rk), intent(in) :: x(:)
-    integer, intent(inout) :: last !< of the columns before, 0 at the beginning
+    integer, intent(in) :: longest !< gap
+    integer, intent(inout) :: last !< of the forces before, 0 at the beginning
     integer, intent(out) :: first
     integer :: c
     do first = last + 1, size(x)
@@ -281,8 +326,8 @@ contains
     if (first > size(x)) return
     last = first
     do c = first + 1, size(x)
-      if (c - last > longest_gap) exit
+      if (c - last > longest) exit
       if (abs(x(c)) > 0.0_rk) last = c
     end do
-  end subroutine find_columns
+  end subroutine find_forces
 end module coupling_block

@@ -124,10 +124,11 @@ contains
       spring = reshape(points%spring(:, point), shape(spring))
       answer = reshape(closed_jump(:, point), shape(answer))
       do k = 1, groups%num_groups
-        if (k == group .or. .not. blocks%block(group, k)%is_there()) cycle
+        if (k == group .or. .not. blocks%has_block(group, k)) cycle
         associate (other => groups%members(k))
-          call blocks%block(group, k)%add_to( &
-            reshape(d(:, other)/points%spring(:, other), [3*size(other)]), answer)
+          call blocks%add_block(group, k, &
+                                reshape(d(:, other)/points%spring(:, other), [3*size(other)]), &
+                                answer, .false.)
         end associate
       end do
       missing = answer/spring - reshape(force(:, point), shape(missing))

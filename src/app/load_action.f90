@@ -1,5 +1,5 @@
-!> Peaks of the base motions of a step, for the summary of a model.
-module motion_peaks
+!> What a load does in a step, for the summary of a model: its factor, and the peak of a motion.
+module load_action
   use amplitudes, only: one_g
   use check_motions, only: find_peak
   use kinds, only: rk
@@ -9,9 +9,34 @@ module motion_peaks
   use write_text, only: as_text
   implicit none
   private
-  public :: peak_of_motion
+  public :: action_of_load
 
 contains
+
+  !> 'factor 0 to 9.81', 'factor 2 times amplitude RAMP', with the peak of a base motion.
+  pure function action_of_load(model, number, work) result(text)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(step_load), intent(in) :: work
+    character(:), allocatable :: text
+    text = factor_of(model, number, work)//peak_of_motion(model, number, work)
+  end function action_of_load
+
+  !> The factor: that of an amplitude, a ramp, or one that changes at once where there is inertia.
+  pure function factor_of(model, number, work) result(text)
+    type(problem), intent(in) :: model
+    integer, intent(in) :: number !< of the step
+    type(step_load), intent(in) :: work
+    character(:), allocatable :: text
+    text = 'factor '//as_text(work%end_factor)
+    if (work%amplitude > 0) then
+      text = text//' times amplitude '//model%amplitudes(work%amplitude)%name
+    else if (.not. model%steps(number)%procedure%has_inertia) then
+      text = 'factor '//as_text(work%start_factor)//' to '//as_text(work%end_factor)
+    else if (abs(work%end_factor - work%start_factor) > 0.0_rk) then
+      text = text//' from the start, '//as_text(work%start_factor)//' before'
+    end if
+  end function factor_of
 
   !> ', peak 3.07 m/s2 = 0.313 g at t = 2.14 s' of a base motion that acts, without units where the
   !> deck is not in metres and seconds; '' of other loads.
@@ -52,4 +77,4 @@ contains
     if (text(1:1) == '.') text = '0'//text
     text = as_text(acceleration)//' m/s2 = '//text//' g'
   end function in_units
-end module motion_peaks
+end module load_action
