@@ -73,6 +73,7 @@ KINDS = {
     "warning_tie_of_one_held_node": "support-on-tie",
     "warning_light_solid_in_motion": "light-solid",
     "warning_massless_dampings_of_a_reduced_model": "massless-damping",
+    "warning_dampings_of_a_reduced_model": "coupled-damping",
 }
 
 

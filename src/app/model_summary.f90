@@ -6,7 +6,7 @@ module model_summary
   use load_action, only: action_of_load
   use material_law, only: material
   use problem_definition, only: problem
-  use step_plan, only: step, step_damping, step_load
+  use step_plan, only: step, step_controls, step_damping, step_load
   use text_buffers, only: text_buffer
   use write_text, only: as_text
   use print_kinds, only: kinds_of_prints
@@ -324,13 +324,20 @@ contains
     if (now%is_direct) text = text//', fixed'
     if (now%procedure%has_inertia) text = text//', SCHEME '//trim(now%procedure%scheme)
     if (now%procedure%uses_alpha) text = text//', ALPHA '//as_text(now%alpha)
-    text = text//nl//row('controls', 'RESIDUAL '//as_text(now%controls%residual_tolerance)// &
-                         ', INCREMENT '//as_text(now%controls%increment_tolerance)// &
-                         ', ITERATIONS '//as_text(now%controls%max_iterations)// &
-                         ', JOINT SOLVER '//trim(now%controls%joint_solver)// &
-                         ', JOINT FORCES '//trim(now%controls%joint_forces))
-    text = text//damping_of(now%damping)
+    text = text//nl//row('controls', controls_of(now%controls))//damping_of(now%damping)
   end function procedure_of
+
+  !> ACCURACY where it is asked for, all other controls always.
+  pure function controls_of(now) result(text)
+    type(step_controls), intent(in) :: now
+    character(:), allocatable :: text
+    text = 'RESIDUAL '//as_text(now%residual_tolerance)//', INCREMENT '// &
+           as_text(now%increment_tolerance)//', ITERATIONS '//as_text(now%max_iterations)// &
+           ', JOINT SOLVER '//trim(now%joint_solver)//', JOINT FORCES '//trim(now%joint_forces)// &
+           ', TANGENT '//trim(now%tangent)//', PRECISION '//trim(now%precision)// &
+           ', ERROR ESTIMATE '//trim(merge('ON ', 'OFF', now%estimates_errors))
+    if (now%accuracy > 0.0_rk) text = text//', ACCURACY '//as_text(now%accuracy)
+  end function controls_of
 
   pure function damping_of(now) result(text)
     type(step_damping), intent(in) :: now

@@ -264,7 +264,8 @@ def test_other_estimates_are_told_in_words_and_in_the_units_of_the_page(block):
         ("Largest joint opening",
          "± 0.5 mm (joints 0.5; mesh not estimated); springs of joints contribute about 0.1 mm"),
         ("Mesh, in the stresses of the whole model",
-         "25 % in the energy norm, at 1.5 s; of the elastic part alone, 50 % of the volume"),
+         "25 % in the energy norm, at 1.5 s, in the solids that are elastic then, "
+         "50 % of the volume"),
         ("Increments, in the law of the solids",
          "4 % of the dissipated energy, at most 0.3 MPa in a stress (7 points sampled)"),
         ("new", "value 2"),

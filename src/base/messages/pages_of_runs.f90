@@ -162,6 +162,15 @@ contains
                   '11.9 says what a closing crack does and what RECOVERY=ENERGY changes.', &
                   '0.02 s increments', &
                   '0.005 s increments, or RECOVERY=ENERGY')
+    call list%add('fixed-recovery', &
+                  'prevented equilibrium', &
+                  'With RECOVERY=SIGN the stiffness of cracked concrete jumps where a crack '// &
+                  'closes or opens. An increment had no equilibrium on either side of the '// &
+                  'jump. The program kept the recovery of the start of the increment in it.', &
+                  'Compare with a run with RECOVERY=ENERGY, whose stress does not jump. '// &
+                  'docs/theory.md 11.9 compares the kinds of RECOVERY.', &
+                  '*CONCRETE TENSION DAMAGE, RECOVERY=SIGN', &
+                  '*CONCRETE TENSION DAMAGE, RECOVERY=ENERGY')
     call list%add('accuracy', &
                   'does not reach the ACCURACY|estimated error', &
                   'The estimate of the error is above the accuracy that the deck asks for.', &

@@ -1,5 +1,5 @@
-!> Warns of solids that are nearly without mass in a motion, and of dampings of massless solids that
-!> a reduced model does not have.
+!> Warns of solids that are nearly without mass in a motion, and of dampings that a reduced model
+!> does not have.
 module check_light_solids
   use diagnostics, only: diagnostic_list
   use kinds, only: rk
@@ -58,26 +58,55 @@ contains
     end do
   end subroutine warn_of_densities
 
-  !> Massless solids of a reduced model have one damping together.
+  !> Two dampings of massless solids, or of solids with mass, of which a reduced model holds one.
   subroutine warn_of_dampings(model, s, is_used, faults)
     type(draft), intent(in) :: model
     integer, intent(in) :: s !< step
     logical, intent(in) :: is_used(:) !< (materials) by elements
     type(diagnostic_list), intent(inout) :: faults
-    integer :: i, first
-    first = 0
-    do i = 1, size(is_used)
-      if (.not. is_used(i) .or. model%problem%materials(i)%density > 0.0_rk) cycle
-      if (first == 0) first = i
-      associate (now => model%problem%materials(i), other => model%problem%materials(first))
-        if (abs(now%beta - other%beta) <= same_damping*max(now%beta, other%beta)) cycle
-        call model%cards(model%procedure_card(s))%warn( &
-          faults, 'BETA of the massless materials '//other%name//' and '//now%name//' is '// &
-          as_text(other%beta)//' and '//as_text(now%beta)//': REDUCED gives all '// &
-          'massless solids one damping, and its estimate does not contain this error', &
-          'one BETA for massless materials, or *DYNAMIC without REDUCED')
-        return
-      end associate
-    end do
+    integer :: pair(2)
+    pair = two_dampings(model, is_used .and. .not. model%problem%materials%density > 0.0_rk)
+    if (pair(2) > 0) then
+      call model%cards(model%procedure_card(s))%warn( &
+        faults, 'BETA of the massless materials '//values_of(model, pair)//': REDUCED gives '// &
+        'all massless solids one damping, and its estimate does not contain this error', &
+        'one BETA for massless materials, or *DYNAMIC without REDUCED')
+    end if
+    pair = two_dampings(model, is_used .and. model%problem%materials%density > 0.0_rk)
+    if (pair(2) == 0) return
+    call model%cards(model%procedure_card(s))%warn( &
+      faults, 'BETA of the materials '//values_of(model, pair)//': REDUCED leaves out the '// &
+      'damping that couples its modes with the rest, and its estimate does not contain this '// &
+      'error', &
+      'one BETA for all materials with mass, or *DYNAMIC without REDUCED')
   end subroutine warn_of_dampings
+
+  !> The first two of some materials whose BETA differs; zero where all have one.
+  pure function two_dampings(model, is_asked) result(pair)
+    type(draft), intent(in) :: model
+    logical, intent(in) :: is_asked(:) !< (materials)
+    integer :: pair(2)
+    integer :: i
+    pair = 0
+    do i = 1, size(is_asked)
+      if (.not. is_asked(i)) cycle
+      if (pair(1) == 0) pair(1) = i
+      associate (now => model%problem%materials(i)%beta, &
+                 other => model%problem%materials(pair(1))%beta)
+        if (abs(now - other) <= same_damping*max(now, other)) cycle
+      end associate
+      pair(2) = i
+      return
+    end do
+  end function two_dampings
+
+  !> 'ROCK and DAM is 0.004 and 0.001'.
+  pure function values_of(model, pair) result(text)
+    type(draft), intent(in) :: model
+    integer, intent(in) :: pair(2) !< materials
+    character(:), allocatable :: text
+    associate (one => model%problem%materials(pair(1)), two => model%problem%materials(pair(2)))
+      text = one%name//' and '//two%name//' is '//as_text(one%beta)//' and '//as_text(two%beta)
+    end associate
+  end function values_of
 end module check_light_solids

@@ -48,7 +48,8 @@ contains
               field('ERROR ESTIMATE', kind_choice, 'errors that the run estimates for its '// &
                     'summary (docs/accuracy.md)', default='ON', choices='ON | OFF'), &
               field('JOINT SOLVER', kind_choice, 'iterate on the joints alone (condensed) or '// &
-                    'on everything (full Newton)', default='AUTO', &
+                    'on everything (full Newton, which factors the matrix in each iteration '// &
+                    'and takes many times as long)', default='AUTO', &
                     choices=joint_solvers), &
               field('PRECISION', kind_choice, 'of the factor of the matrix that is kept: with '// &
                     'SINGLE it takes half the memory, and solves are refined in double '// &
@@ -62,8 +63,8 @@ contains
                     'of the end of the step, as the bulk, or end of the step', &
                     default='IMPLICIT', choices='IMPLICIT | HHT | END'), &
               field('TANGENT', kind_choice, 'tangent of inelastic solids: consistent '// &
-                    '(unsymmetric), secant, or elastic with many cheap '// &
-                    'iterations', default='AUTO', &
+                    '(unsymmetric, factored in each iteration, which takes many times as '// &
+                    'long), secant, or elastic with many cheap iterations', default='AUTO', &
                     choices='AUTO | CONSISTENT | SECANT | ELASTIC')])
     call add_idle_parameters(spec, idle)
   end subroutine describe_controls
@@ -73,7 +74,8 @@ contains
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
     if (size(this%parameters) == 0) then
-      call this%warn(faults, 'the keyword has no parameter and no effect', 'at least one parameter')
+      call this%warn(faults, 'the keyword has no effect: it has no parameter', &
+                     'at least one parameter')
     end if
     if (this%num_lines > 0 .and. .not. this%has('PARAMETERS')) then
       call this%fault_at(faults, 1, 0, 'found a data line', 'parameters of the keyword only')

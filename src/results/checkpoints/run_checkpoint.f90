@@ -136,8 +136,8 @@ contains
       call raise(error, 'keyway: --continue: '//remark, system_failed)
     else
       call raise(error, "keyway: --continue: there is no checkpoint '"// &
-                 checkpoint_path(stem, is_old=.false.)//"' (*RESTART, WRITE in the deck)", &
-                 deck_is_wrong)
+                 checkpoint_path(stem, is_old=.false.)//"': its run had no *RESTART, WRITE, or "// &
+                 'ended before the first checkpoint; start without --continue', deck_is_wrong)
     end if
   end subroutine load_checkpoint
 

@@ -26,14 +26,24 @@ contains
     if (model%steps(now%step)%procedure%has_inertia) call check_time_stepping(self, model, now)
     if (self%damage%is_present) call check_crack_energy(self, model, now)
     if (now%has_held_switches) then
-      call self%warn_once('step '//model%steps(now%step)%name//': the jump of '// &
-                          'RECOVERY=SIGN prevented equilibrium in an increment; the stiffness '// &
-                          'recovery was fixed at its value from the start of the increment')
+      call warn_of_jump(self, 'step '//model%steps(now%step)%name, now%step_time)
     end if
     call check_size(self, model, now)
     call check_reduction(self, model, now)
     call check_sliding(self, model, now)
   end subroutine warn_of_increment
+
+  !> Warns once in a step where the stiffness recovery was held to find equilibrium.
+  subroutine warn_of_jump(self, step, time)
+    class(run_record), intent(inout) :: self
+    character(*), intent(in) :: step
+    real(rk), intent(in) :: time !< of the step [s]
+    character(:), allocatable :: words
+    words = step//': the jump of RECOVERY=SIGN prevented equilibrium in an increment, first at '
+    if (has_warned(self, words)) return
+    call self%warn_once(words//as_text(time)//' s of the step; the stiffness recovery was '// &
+                        'fixed at its value from the start of the increment')
+  end subroutine warn_of_jump
 
   !> Warns when displacements exceed the size of the model: displacements are small here, so a part
   !> is loose or an input is wrong.

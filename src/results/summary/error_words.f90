@@ -108,8 +108,8 @@ contains
            as_short_text(100.0_rk*record%space%relative())//' % of all stresses together '// &
            '(energy norm), time '//as_short_text(record%space%time)
     if (record%space%elastic < 1.0_rk) then
-      text = text//'; of the elastic part alone, '// &
-             as_short_text(100.0_rk*record%space%elastic)//' % of the volume'
+      text = text//', in the solids that are elastic then, '// &
+             as_short_text(100.0_rk*record%space%elastic)//' % of the volume of all solids'
     end if
   end function line_of_mesh
 

@@ -1,7 +1,7 @@
 !> The end of a run in some lines for people: largest values with place and time, joints, damage,
 !> accuracy, warnings, and what each effect has cost. The numbers are those of job.json.
 module run_closing
-  use damage_readings, only: damage_extreme, levels
+  use damage_readings, only: damage_extreme, damage_record, levels
   use diagnostics, only: severity_ignored
   use dual_solutions, only: of_opening
   use error_words, only: error_of, error_of_envelope, error_of_motion, line_of_law, &
@@ -20,6 +20,8 @@ module run_closing
   public :: closing_lines
 
   integer, parameter :: most_joints = 6, most_effects = 6, most_modes = 6 !< that are listed
+  !> Least energy created by laws that is named, over the dissipated energy.
+  real(rk), parameter :: least_created = 1.0e-3_rk
   character, parameter :: nl = new_line('a')
 
 contains
@@ -135,7 +137,7 @@ contains
     text = text//nl//'volume with damage in tension of '//as_text(levels(2))//' or more '// &
            as_short_text(record%damage%volume(2))//'; dissipated by cracking '// &
            as_short_text(record%damage%cracking)//', by crushing '// &
-           as_short_text(record%damage%crushing)
+           as_short_text(record%damage%crushing)//created_text(record%damage)
   contains
     !> One kind of damage. Concrete may crack without a damage variable: it keeps its stiffness.
     function line_of(kind, largest, energy, verb) result(line)
@@ -155,6 +157,18 @@ contains
              ', element '//as_text(largest%element)
     end function line_of
   end function lines_of_damage
+
+  !> '; created by the law 2.9e6, 9 % of this': concrete whose stress has no potential.
+  pure function created_text(damage) result(text)
+    type(damage_record), intent(in) :: damage
+    character(:), allocatable :: text
+    real(rk) :: dissipated
+    text = ''
+    dissipated = damage%cracking + damage%crushing
+    if (abs(damage%created) <= least_created*dissipated) return
+    text = '; created by the law '//as_short_text(damage%created)//', '// &
+           as_short_text(100.0_rk*damage%created/dissipated)//' % of this'
+  end function created_text
 
   !> Iteration, energy balance, and the estimates of reduced models.
   function lines_of_accuracy(model, summary) result(text)

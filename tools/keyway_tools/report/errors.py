@@ -83,9 +83,8 @@ def _of_mesh(found: dict[str, Any]) -> str:
     if "at" in found:
         words += f", at {found['at']:.5g} s"
     if found.get("elastic_volume", 1.0) < 1.0:
-        words += (
-            f"; of the elastic part alone, {100.0 * found['elastic_volume']:.4g} % of the volume"
-        )
+        share = 100.0 * found["elastic_volume"]
+        words += f", in the solids that are elastic then, {share:.4g} % of the volume"
     return words
 
 
