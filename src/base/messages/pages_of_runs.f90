@@ -169,8 +169,8 @@ contains
                   'jump. The program kept the recovery of the start of the increment in it.', &
                   'Compare with a run with RECOVERY=ENERGY, whose stress does not jump. '// &
                   'docs/theory.md 11.9 compares the kinds of RECOVERY.', &
-                  '*CONCRETE TENSION DAMAGE, RECOVERY=SIGN', &
-                  '*CONCRETE TENSION DAMAGE, RECOVERY=ENERGY')
+                  '*CONCRETE DAMAGED PLASTICITY, RECOVERY=SIGN', &
+                  '*CONCRETE DAMAGED PLASTICITY, RECOVERY=ENERGY')
     call list%add('accuracy', &
                   'does not reach the ACCURACY|estimated error', &
                   'The estimate of the error is above the accuracy that the deck asks for.', &
