@@ -191,9 +191,9 @@ contains
       y = y + single_times_vector(self%left(:, :rank), &
                                   transposed_single_times_vector(self%right(:, :rank), x))
     else if (allocated(self%values)) then
-      call add_product(self%values, x, y)
+      call add_product(self%values, x, .false., y)
     else if (allocated(self%rounded)) then
-      call add_rounded(self%rounded, x, y)
+      call add_rounded(self%rounded, x, .false., y)
     end if
   end subroutine add_to
 
@@ -209,9 +209,9 @@ contains
       y = y + single_times_vector(self%right(:, :rank), &
                                   transposed_single_times_vector(self%left(:, :rank), x))
     else if (allocated(self%values)) then
-      call add_transposed_product(self%values, x, y)
+      call add_product(self%values, x, .true., y)
     else if (allocated(self%rounded)) then
-      call add_transposed_rounded(self%rounded, x, y)
+      call add_rounded(self%rounded, x, .true., y)
     end if
   end subroutine add_transposed_to
 
@@ -249,24 +249,31 @@ contains
     num_entries = num_entries + size(self%left, kind=long) + size(self%right, kind=long)
   end function num_entries
 
-  !> y = y + A x with the columns whose x is not zero: most points of a joint are often closed.
-  subroutine add_product(a, x, y)
+  !> y = y + A x with the columns whose x is not zero, or y = y + A^T x with such rows: most points
+  !> of a joint are often closed.
+  subroutine add_product(a, x, is_transposed, y)
     real(rk), intent(in), contiguous :: a(:, :)
     real(rk), intent(in), contiguous :: x(:)
+    logical, intent(in) :: is_transposed
     real(rk), intent(inout), contiguous :: y(:)
     integer :: first, last
     last = 0
     do
-      call find_forces(x, longest_gap, last, first)
+      call find_forces(x, merge(longest_gap_of_rows, longest_gap, is_transposed), last, first)
       if (first > last) exit
-      call add_times_vector(a(:, first:last), x(first:last), y)
+      if (is_transposed) then
+        call add_transposed_times(size(a, 1), a, first, x(first:last), y)
+      else
+        call add_times_vector(a(:, first:last), x(first:last), y)
+      end if
     end do
   end subroutine add_product
 
   !> The same with A and the sums in single precision.
-  subroutine add_rounded(a, x, y)
+  subroutine add_rounded(a, x, is_transposed, y)
     real(single), intent(in), contiguous :: a(:, :)
     real(rk), intent(in), contiguous :: x(:)
+    logical, intent(in) :: is_transposed
     real(rk), intent(inout), contiguous :: y(:)
     real(single) :: forces(size(x)), sums(size(y))
     integer :: first, last
@@ -274,44 +281,16 @@ contains
     sums = 0.0_single
     last = 0
     do
-      call find_forces(x, longest_gap, last, first)
+      call find_forces(x, merge(longest_gap_of_rows, longest_gap, is_transposed), last, first)
       if (first > last) exit
-      call add_single_times_vector(a(:, first:last), forces(first:last), sums)
+      if (is_transposed) then
+        call add_transposed_single_times(size(a, 1), a, first, forces(first:last), sums)
+      else
+        call add_single_times_vector(a(:, first:last), forces(first:last), sums)
+      end if
     end do
     y = y + real(sums, rk)
   end subroutine add_rounded
-
-  !> y = y + A^T x with the rows whose x is not zero.
-  subroutine add_transposed_product(a, x, y)
-    real(rk), intent(in), contiguous :: a(:, :)
-    real(rk), intent(in), contiguous :: x(:)
-    real(rk), intent(inout), contiguous :: y(:)
-    integer :: first, last
-    last = 0
-    do
-      call find_forces(x, longest_gap_of_rows, last, first)
-      if (first > last) exit
-      call add_transposed_times(size(a, 1), a, first, x(first:last), y)
-    end do
-  end subroutine add_transposed_product
-
-  !> The same with A and the sums in single precision.
-  subroutine add_transposed_rounded(a, x, y)
-    real(single), intent(in), contiguous :: a(:, :)
-    real(rk), intent(in), contiguous :: x(:)
-    real(rk), intent(inout), contiguous :: y(:)
-    real(single) :: forces(size(x)), sums(size(y))
-    integer :: first, last
-    forces = real(x, single)
-    sums = 0.0_single
-    last = 0
-    do
-      call find_forces(x, longest_gap_of_rows, last, first)
-      if (first > last) exit
-      call add_transposed_single_times(size(a, 1), a, first, forces(first:last), sums)
-    end do
-    y = y + real(sums, rk)
-  end subroutine add_transposed_rounded
 
   !> The next forces that are not zero and have no long gaps between them; none where first > last.
   pure subroutine find_forces(x, longest, last, first)

@@ -133,7 +133,7 @@ contains
       end do
       missing = answer/spring - reshape(force(:, point), shape(missing))
       answer = spring*missing
-      call add_product(opened%compliance, missing, answer)
+      call add_product(opened%compliance, missing, .false., answer)
       d(:, point) = reshape(answer, [3, size(point)])
     end associate
   end subroutine find_rest

@@ -33,7 +33,7 @@ contains
     call check_sliding(self, model, now)
   end subroutine warn_of_increment
 
-  !> Warns once in a step where the stiffness recovery was held to find equilibrium.
+  !> Warns once in a step where equilibrium was found with the stiffness recovery fixed.
   subroutine warn_of_jump(self, step, time)
     class(run_record), intent(inout) :: self
     character(*), intent(in) :: step

@@ -165,7 +165,7 @@ contains
     real(rk) :: dissipated
     text = ''
     dissipated = damage%cracking + damage%crushing
-    if (abs(damage%created) <= least_created*dissipated) return
+    if (abs(damage%created) <= least_created*dissipated .or. .not. dissipated > 0.0_rk) return
     text = '; created by the law '//as_short_text(damage%created)//', '// &
            as_short_text(100.0_rk*damage%created/dissipated)//' % of this'
   end function created_text
