@@ -203,6 +203,7 @@ contains
     end associate
     balance%reference_force = now%largest_force
     balance%is_static = .true.
+    balance%is_estimate = .true.
     call balance%set_jumps(system%operator, now%motion%q, now%joints)
     allocate (found%x(size(load)))
     found%joints = now%joints

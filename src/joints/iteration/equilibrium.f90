@@ -37,6 +37,7 @@ module equilibrium
     logical :: is_repeated = .false.
     logical :: is_partial = .false. !< the solution is needed at active unknowns alone
     logical :: is_static = .false. !< no inertia holds a block that has left its supports
+    logical :: is_estimate = .false. !< not worth the blocks of the compliance that are left out
   contains
     procedure :: set_jumps, start_from
   end type force_balance

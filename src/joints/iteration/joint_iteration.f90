@@ -1,6 +1,7 @@
 !> Common parts of the condensed and the full iteration on joint forces: linearisation of the laws
 !> at a trial jump, residual and correction.
 module joint_iteration
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: rk
   use global_vectors, only: norm, distance, length, total
   use joint_law, only: joint_state
@@ -205,7 +206,7 @@ contains
       if (iteration == 0) return
       history%unbalance = [history%unbalance, outcome%unbalance]
       history%least = minloc(history%unbalance, 1)
-      history%has_ended = is_cycling(history%unbalance)
+      history%has_ended = is_cycling(history%unbalance) .or. .not. ieee_is_finite(outcome%unbalance)
       outcome%is_loose = history%has_ended .and. outcome%is_driven
     end associate
   end subroutine close_iteration

@@ -41,6 +41,7 @@ module newton_condensed
   !> them so far that an arch of 16 blocks took 87 iterations in place of 9.
   real(rk), parameter :: solved_in_statics = 1.0e-6_rk, solved_in_time = 1.0e-3_rk
   real(rk), parameter :: admissible_share = 0.1_rk
+  real(rk), parameter :: stalled = 0.5_rk !< a residual over the one before it that hardly falls
   !> The correction that decides convergence needs some digits, more of them where a small force
   !> may move a block far.
   real(rk), parameter :: judged_in_statics = 1.0e-4_rk, judged_in_time = 1.0e-2_rk
@@ -168,11 +169,17 @@ contains
     end function is_near_enough
 
     !> Residual of the linear equations that need not be solved for. Where the residual is within
-    !> its tolerance, the correction is not, and needs more digits.
+    !> its tolerance, the correction is not, and needs more digits. Where the residual hardly falls,
+    !> a point may slide or stick by what was not solved for.
     real(rk) function negligible_force()
+      integer :: n
       negligible_force = 0.0_rk ! [N]
+      n = size(history%unbalance)
       associate (tolerance => now%controls%residual_tolerance)
-        if (size(history%unbalance) > 0 .and. now%outcome%residual <= tolerance) return
+        if (n > 0 .and. now%outcome%residual <= tolerance) return
+        if (n > 1) then
+          if (history%unbalance(n) > stalled*history%unbalance(n - 1)) return
+        end if
         negligible_force = admissible_share*tolerance*smallest_force(now%field)
       end associate
     end function negligible_force

@@ -1,8 +1,11 @@
 !> Residuals of joints.
 program test_joint_iteration
+  use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use joint_forces, only: joint_field
-  use joint_iteration, only: smallest_force
+  use joint_iteration, only: close_iteration, goes_on, iteration_history, joint_increment, &
+                             smallest_force
   use kinds, only: rk
+  use step_plan, only: step_controls
   use testing, only: check, test_log
   implicit none
   type(test_log) :: log
@@ -13,6 +16,28 @@ program test_joint_iteration
   call check(log, 1.0e12_rk < huge(1.0_rk)*smallest_force(field), 'a residual without forces')
   field%start_force = 2.0_rk
   call check(log, abs(smallest_force(field) - 2.0_rk) <= 0.0_rk, 'the force at the start')
+  call iteration_without_numbers_ends(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
+
+contains
+
+  !> Numbers that are none do not get better: the iteration ends at once.
+  subroutine iteration_without_numbers_ends(log)
+    type(test_log), intent(inout) :: log
+    type(joint_increment) :: now
+    type(iteration_history) :: history
+    type(step_controls), target :: controls
+    now%controls => controls
+    allocate (history%unbalance(0))
+    now%outcome%iterations = 1
+    now%outcome%unbalance = 0.5_rk
+    call close_iteration(now, history)
+    call check(log, goes_on(history, now), 'a residual')
+    now%outcome%iterations = 2
+    now%outcome%unbalance = ieee_value(1.0_rk, ieee_quiet_nan)
+    call close_iteration(now, history)
+    call check(log,.not. goes_on(history, now), 'not a number')
+    call check(log,.not. now%outcome%has_converged, 'not converged')
+  end subroutine iteration_without_numbers_ends
 end program test_joint_iteration
