@@ -82,7 +82,10 @@ def test_a_fault_cuts_the_increment_and_ends_the_run(keyway, source, constants, 
     assert re.search(r"material PLAIN, element (101|205), point [1-8]" + reported, run.stderr)
     assert run.json["status"] == "stopped"
     assert word in run.json["message"]
-    assert run.json["steps"][0]["cutbacks"] > 3
+    cutbacks = run.json["steps"][0]["cutbacks"]
+    assert cutbacks > 3
+    log = (run.folder / "job.log").read_text()
+    assert len(re.findall(rf"cut-back: step 1 .*{re.escape(word)}", log)) == cutbacks
     # As far as the increments could be halved, and no further.
     assert 0.5 - 0.002 < run.csv("el_BAR")["time"][-1] <= 0.5 + 1e-9
     assert np.isfinite(all_numbers(run)).all()

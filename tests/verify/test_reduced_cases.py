@@ -79,7 +79,12 @@ def test_cut_increments(keyway):
     full, deck, files = decks(dataclasses.replace(SHAKEN, size=6.0, edits=(cuttable, strict)))
     expected = openings(keyway(full, name="full", files=files), 2).max()
     run = keyway(deck, name="reduced", files=files)
-    assert run.json["steps"][-1]["cutbacks"] > 0
+    log = (run.folder / "reduced.log").read_text()
+    cuts = [line for line in log.splitlines() if "cut-back:" in line]
+    assert len(cuts) == run.json["steps"][-1]["cutbacks"] > 0
+    assert all(re.search(r"increment \d+ of \S+ s from time .*; the next has", cut) for cut in cuts)
+    assert "*CONTROLS, " in cuts[0]
+    assert "; largest in joint " in cuts[0]
     assert run.json["steps"][-1]["energy"]["error"] <= 1e-6
     assert openings(run, 2).max() == pytest.approx(expected, rel=ACCURACY)
 

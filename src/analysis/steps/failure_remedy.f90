@@ -29,7 +29,7 @@ contains
     case (of_jumps)
       text = 'the relative displacements of the solution and those of the joint laws differ '// &
              'by '//short(unmet%value)//' of the forces (tolerance '//short(unmet%tolerance)// &
-             ', a tenth of *CONTROLS, RESIDUAL)'
+             ', half of *CONTROLS, RESIDUAL)'
     case (of_solves)
       text = 'the solver leaves '//short(unmet%value)//' of the forces (tolerance '// &
              short(unmet%tolerance)//', 0.3 times *CONTROLS, RESIDUAL)'

@@ -19,7 +19,7 @@ module step_loop
   use integrator_type, only: integrator
   use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
-  use step_report, only: check_count, close_increment, count_increment, report_failure
+  use step_report, only: check_count, close_increment, count_increment, line_of_cut, report_failure
   use tangent_choice, only: choose_tangents, tangent
   use user_increments, only: begin_user_increment
   use warming, only: warm
@@ -222,6 +222,9 @@ contains
         call results%increment_dropped(model, now, error)
       else
         call cut(model, plan, method, now, next, error)
+        if (.not. allocated(error)) then
+          call results%log%note(line_of_cut(model, method%system, next%outcome, now))
+        end if
       end if
       if (allocated(error)) return
     end do

@@ -16,7 +16,7 @@ module step_report
   use write_text, only: as_text
   implicit none
   private
-  public :: check_count, close_increment, count_increment, report_failure
+  public :: check_count, close_increment, count_increment, report_failure, line_of_cut
 
 contains
 
@@ -71,7 +71,6 @@ contains
     type(error_type), allocatable, intent(out) :: error
     character(480) :: text
     character(:), allocatable :: remedy
-    integer :: p, j
     if (allocated(outcome%failure)) then
       call raise(error, failure_text(outcome, now))
       return
@@ -88,41 +87,74 @@ contains
         ' with an increment of ', now%control%last_size, ', last equilibrium at time ', &
         now%total_time
     end if
-    remedy = name_remedy(model%steps(now%step), now%control, outcome)
-    p = outcome%worst_point
-    if (p == 0) then
-      call raise(error, trim(text)//worst_node(model, system, outcome, now%step)//remedy)
-      return
-    end if
-    j = count(system%operator%first_point <= p)
-    p = p - system%operator%first_point(j) + 1
-    call raise(error, trim(text)//'; largest in joint '//model%joints(j)%name//' at '// &
-               place_text(model%joints(j)%x(:, p))//name_slave_side(model%joints(j))//remedy)
+    remedy = advice_beyond_peak(model, outcome, now%step)// &
+             name_remedy(model%steps(now%step), now%control, outcome)
+    call raise(error, trim(text)//worst_place(model, system, outcome)//remedy)
   end subroutine report_failure
 
-  !> Largest residual of inelastic solids: '; largest at node 12 at (0., 1., 3.)'.
-  pure function worst_node(model, system, outcome, step) result(text)
+  !> The line of the log on an increment that has been cut.
+  function line_of_cut(model, system, outcome, now) result(line)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     type(balance_outcome), intent(in) :: outcome
+    type(state), intent(in) :: now !< before the increment
+    character(:), allocatable :: line
+    associate (plan => model%steps(now%step), control => now%control)
+      line = 'cut-back: step '//count_text(now%step)//'  increment '// &
+             count_text(now%increment + 1)//' of '//as_text(control%last_size)//' s from time '// &
+             as_text(now%total_time)//' on'
+      if (allocated(outcome%failure)) then
+        line = line//': '//outcome%failure
+      else if (outcome%gives_up) then
+        line = line//': the penetration of a contact stays above *JOINT LAW, PENETRATION'
+      else
+        line = line//': '//name_criterion(plan, outcome)//' after '// &
+               count_text(outcome%iterations)//' iterations'// &
+               worst_place(model, system, outcome)
+      end if
+      line = line//'; the next has '//as_text(control%next_size(now%step_time))//' s'
+    end associate
+  end function line_of_cut
+
+  !> Largest residual of joints, or of inelastic solids: '; largest at node 12 at (0., 1., 3.)'.
+  pure function worst_place(model, system, outcome) result(text)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    type(balance_outcome), intent(in) :: outcome
+    character(:), allocatable :: text
+    integer :: node, p, j
+    text = ''
+    p = outcome%worst_point
+    if (p > 0) then
+      j = count(system%operator%first_point <= p)
+      p = p - system%operator%first_point(j) + 1
+      text = '; largest in joint '//model%joints(j)%name//' at '// &
+             place_text(model%joints(j)%x(:, p))//name_slave_side(model%joints(j))
+    else if (outcome%worst_unknown > 0) then
+      node = system%numbers%node(outcome%worst_unknown)
+      text = '; largest at node '//count_text(model%mesh%node_id(node))// &
+             own_name_of_node(model%outside, model%instances, model%mesh%node_id(node))//' at '// &
+             place_text(model%mesh%x(:, node))
+    end if
+  end function worst_place
+
+  !> What helps inelastic solids in a static step that have lost their equilibrium.
+  pure function advice_beyond_peak(model, outcome, step) result(text)
+    type(problem), intent(in) :: model
+    type(balance_outcome), intent(in) :: outcome
     integer, intent(in) :: step
     character(:), allocatable :: text
-    integer :: node
     text = ''
-    if (outcome%worst_unknown == 0) return
-    node = system%numbers%node(outcome%worst_unknown)
-    text = '; largest at node '//count_text(model%mesh%node_id(node))// &
-           own_name_of_node(model%outside, model%instances, model%mesh%node_id(node))//' at '// &
-           place_text(model%mesh%x(:, node))
+    if (outcome%worst_point > 0 .or. outcome%worst_unknown == 0) return
     if (.not. model%steps(step)%procedure%is_static()) return
-    text = text//' (beyond its peak load a cracking structure needs prescribed displacements, '// &
+    text = ' (beyond its peak load a cracking structure needs prescribed displacements, '// &
            'not forces; with these, smaller increments or *CONTROLS, TANGENT='
     if (model%steps(step)%controls%tangent == 'AUTO') then
       text = text//'CONSISTENT)'
     else
       text = text//'AUTO)'
     end if
-  end function worst_node
+  end function advice_beyond_peak
 
   !> Failure of a material, or of uplift in a joint, in the smallest increment.
   pure function failure_text(outcome, now) result(text)

@@ -4,7 +4,7 @@ module joint_iteration
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: rk
   use global_vectors, only: norm, distance, length, total
-  use joint_law, only: joint_state
+  use joint_law, only: joint_state, phase_absent
   use joint_points, only: dam_joint
   use joint_operator, only: jump_operator
   use joint_forces, only: joint_field, evaluate_joints, gather_tractions, gather_jumps
@@ -53,6 +53,8 @@ module joint_iteration
   !> r of the first iteration over that of a point alone (theory.md, 2.3): points that open or slide
   !> together show less stiffness than one alone.
   real(rk), parameter :: first_share = 0.3_rk
+  !> Round-off of an opening, over the norm of all jumps.
+  real(rk), parameter :: touching = 1.0e-10_rk
   !> A cycle repeats its residuals to this fraction of them; longest cycle that is looked for.
   real(rk), parameter :: same_residual = 0.02_rk
   integer, parameter :: longest_cycle = 6
@@ -126,7 +128,35 @@ contains
       field%is_open = .true.
     end associate
     call linearise(now)
+    if (balance%is_static .and. .not. allocated(balance%guess_traction)) then
+      call close_touching_points(now)
+    end if
   end subroutine start_iteration
+
+  !> Points that touch without traction, as those of new or grouted blocks do, are closed and stick
+  !> in the first iterate: round-off would decide which of them are open.
+  subroutine close_touching_points(now)
+    type(joint_increment), intent(inout) :: now !< linearised at the guess
+    real(rk) :: traction(3, now%operator%num_points), round_off
+    integer :: j, p, first
+    associate (field => now%field)
+      call gather_tractions(now%operator, now%old, traction)
+      round_off = touching*max(norm(field%start_jump), field%origin_size) ! [m]
+      do j = 1, size(now%joints)
+        first = now%operator%first_point(j)
+        do p = first, now%operator%first_point(j + 1) - 1
+          if (any(abs(traction(:, p)) > 0.0_rk)) cycle
+          if (abs(field%start_jump(1, p) + field%gap(p)) > round_off) cycle
+          if (allocated(now%old(j)%phase)) then
+            if (now%old(j)%phase(p - first + 1) == phase_absent) cycle
+          end if
+          field%tangent(:, :, p:p) = closed_tangent(now%k_ref(:, p:p))
+          field%iterate(:, p) = now%k_ref(:, p)*field%jump(:, p)
+          field%is_open(p) = .false.
+        end do
+      end do
+    end associate
+  end subroutine close_touching_points
 
   !> Evaluates the laws and adds the smallest stiffness where a joint is open or slides.
   subroutine linearise(now)
