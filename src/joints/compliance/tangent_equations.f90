@@ -35,6 +35,8 @@ module tangent_equations
   !> Solutions with a rough G, and at last one with G; residual that ends them, over the wanted one.
   integer, parameter :: most_passes = 4
   real(rk), parameter :: near_target = 1.5_rk
+  !> A residual over the one before: with less the rough G is worth another solution.
+  real(rk), parameter :: gain_of_pass = 0.1_rk
   !> D of a group may differ so much from that of its kept factor.
   real(rk), parameter :: kept_share = 0.1_rk
 
@@ -178,16 +180,21 @@ contains
     real(rk), intent(in) :: target !< norm of the residual [N]
     real(rk), intent(out) :: product(:) !< (rows) G z [m]
     real(rk), intent(out) :: rest(:) !< (rows) [N]
-    real(rk) :: z(size(b))
+    real(rk) :: z(size(b)), left
+    logical :: is_rough
     integer :: pass
     product = 0.0_rk
     z = 0.0_rk
     rest = b
+    left = length(b)
+    is_rough = .true.
     do pass = 1, most_passes
-      if (.not. length(rest) > merge(near_target, 1.0_rk, pass > 1)*target) return
-      call add_solution(self, blocks, rest, target, pass < most_passes, z)
+      if (.not. left > merge(near_target, 1.0_rk, pass > 1)*target) return
+      call add_solution(self, blocks, rest, target, is_rough .and. pass < most_passes, z)
       call blocks%product(z, product)
       rest = b + apply_change(self%change, product) - z
+      is_rough = length(rest) <= gain_of_pass*left
+      left = length(rest)
     end do
   end subroutine iterate
 
