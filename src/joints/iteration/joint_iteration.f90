@@ -58,6 +58,10 @@ module joint_iteration
   !> A cycle repeats its residuals to this fraction of them; longest cycle that is looked for.
   real(rk), parameter :: same_residual = 0.02_rk
   integer, parameter :: longest_cycle = 6
+  !> Where the forces of an iterate are far from those of the solution, all residuals are 1. They
+  !> repeat although the iterates differ: so many of them are no cycle yet.
+  real(rk), parameter :: saturated = 0.9_rk
+  integer, parameter :: patience = 15
   !> Floor of the joint forces in the residual, as a fraction of the reference force of the bulk.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
   !> Most passes of the augmented Lagrangian in an increment. About 5 are needed where the structure
@@ -224,6 +228,7 @@ contains
   subroutine close_iteration(now, history)
     type(joint_increment), intent(inout) :: now
     type(iteration_history), intent(inout) :: history
+    logical :: may_cycle
     integer :: iteration
     associate (outcome => now%outcome)
       if (outcome%has_converged) then
@@ -234,9 +239,12 @@ contains
       iteration = outcome%iterations - outcome%pass_start
       if (iteration == 0) history%unbalance = [real(rk) ::]
       if (iteration == 0) return
+      history%has_ended = .not. ieee_is_finite(outcome%unbalance)
+      if (history%has_ended) return
       history%unbalance = [history%unbalance, outcome%unbalance]
       history%least = minloc(history%unbalance, 1)
-      history%has_ended = is_cycling(history%unbalance) .or. .not. ieee_is_finite(outcome%unbalance)
+      may_cycle = outcome%is_driven .or. outcome%unbalance <= saturated .or. iteration >= patience
+      history%has_ended = may_cycle .and. is_cycling(history%unbalance)
       outcome%is_loose = history%has_ended .and. outcome%is_driven
     end associate
   end subroutine close_iteration

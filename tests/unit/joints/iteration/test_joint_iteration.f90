@@ -17,6 +17,7 @@ program test_joint_iteration
   field%start_force = 2.0_rk
   call check(log, abs(smallest_force(field) - 2.0_rk) <= 0.0_rk, 'the force at the start')
   call iteration_without_numbers_ends(log)
+  call cycles_end(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -40,4 +41,32 @@ contains
     call check(log,.not. goes_on(history, now), 'not a number')
     call check(log,.not. now%outcome%has_converged, 'not converged')
   end subroutine iteration_without_numbers_ends
+
+  !> Residuals that repeat are a cycle. Residuals of 1 are one only where they repeat long, or where
+  !> the smallest stiffness carries a block.
+  subroutine cycles_end(log)
+    type(test_log), intent(inout) :: log
+    call check(log, length_of_iteration(0.5_rk, .false.) == 3, 'a cycle')
+    call check(log, length_of_iteration(1.0_rk, .false.) == 15, 'residuals of 1')
+    call check(log, length_of_iteration(1.0_rk, .true.) == 3, 'a block that has left its supports')
+  end subroutine cycles_end
+
+  !> Iterations that one residual lasts.
+  integer function length_of_iteration(unbalance, is_driven) result(length)
+    real(rk), intent(in) :: unbalance
+    logical, intent(in) :: is_driven
+    type(joint_increment) :: now
+    type(iteration_history) :: history
+    type(step_controls), target :: controls
+    now%controls => controls
+    allocate (history%unbalance(0))
+    now%outcome%is_driven = is_driven
+    now%outcome%unbalance = unbalance
+    length = 0
+    do while (goes_on(history, now) .and. length < 100)
+      length = length + 1
+      now%outcome%iterations = length
+      call close_iteration(now, history)
+    end do
+  end function length_of_iteration
 end program test_joint_iteration
