@@ -81,9 +81,8 @@ contains
         outcome%augmentations, ' augmentations (a larger KN needs fewer) with an increment of ', &
         now%control%last_size, ', last equilibrium at time ', now%total_time
     else
-      write (text, '(2a,i0,2a,es8.1,a,es12.5)') &
-        'no equilibrium: '//name_criterion(model%steps(now%step), outcome), ' after ', &
-        outcome%iterations, trim(merge(' iteration ', ' iterations', outcome%iterations == 1)), &
+      write (text, '(2a,es8.1,a,es12.5)') &
+        'no equilibrium: '//what_is_unmet(model%steps(now%step), outcome), &
         ' with an increment of ', now%control%last_size, ', last equilibrium at time ', &
         now%total_time
     end if
@@ -108,13 +107,20 @@ contains
       else if (outcome%gives_up) then
         line = line//': the penetration of a contact stays above *JOINT LAW, PENETRATION'
       else
-        line = line//': '//name_criterion(plan, outcome)//' after '// &
-               count_text(outcome%iterations)//' iterations'// &
-               worst_place(model, system, outcome)
+        line = line//': '//what_is_unmet(plan, outcome)//worst_place(model, system, outcome)
       end if
       line = line//'; the next has '//as_text(control%next_size(now%step_time))//' s'
     end associate
   end function line_of_cut
+
+  !> The criterion that is not met, after how many iterations.
+  pure function what_is_unmet(plan, outcome) result(text)
+    type(step), intent(in) :: plan
+    type(balance_outcome), intent(in) :: outcome
+    character(:), allocatable :: text
+    text = name_criterion(plan, outcome)//' after '//count_text(outcome%iterations)// &
+           trim(merge(' iteration ', ' iterations', outcome%iterations == 1))
+  end function what_is_unmet
 
   !> Largest residual of joints, or of inelastic solids: '; largest at node 12 at (0., 1., 3.)'.
   pure function worst_place(model, system, outcome) result(text)

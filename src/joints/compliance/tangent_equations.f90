@@ -180,7 +180,7 @@ contains
     real(rk), intent(in) :: target !< norm of the residual [N]
     real(rk), intent(out) :: product(:) !< (rows) G z [m]
     real(rk), intent(out) :: rest(:) !< (rows) [N]
-    real(rk) :: z(size(b)), left
+    real(rk) :: z(size(b)), left, before
     logical :: is_rough
     integer :: pass
     product = 0.0_rk
@@ -193,8 +193,9 @@ contains
       call add_solution(self, blocks, rest, target, is_rough .and. pass < most_passes, z)
       call blocks%product(z, product)
       rest = b + apply_change(self%change, product) - z
-      is_rough = length(rest) <= gain_of_pass*left
+      before = left
       left = length(rest)
+      is_rough = left <= gain_of_pass*before
     end do
   end subroutine iterate
 

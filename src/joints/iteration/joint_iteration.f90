@@ -141,15 +141,14 @@ contains
   !> in the first iterate: round-off would decide which of them are open.
   subroutine close_touching_points(now)
     type(joint_increment), intent(inout) :: now !< linearised at the guess
-    real(rk) :: traction(3, now%operator%num_points), round_off
+    real(rk) :: round_off
     integer :: j, p, first
     associate (field => now%field)
-      call gather_tractions(now%operator, now%old, traction)
       round_off = touching*max(norm(field%start_jump), field%origin_size) ! [m]
       do j = 1, size(now%joints)
         first = now%operator%first_point(j)
         do p = first, now%operator%first_point(j + 1) - 1
-          if (any(abs(traction(:, p)) > 0.0_rk)) cycle
+          if (any(abs(field%start_spring(:, p)) > 0.0_rk)) cycle
           if (abs(field%start_jump(1, p) + field%gap(p)) > round_off) cycle
           if (allocated(now%old(j)%phase)) then
             if (now%old(j)%phase(p - first + 1) == phase_absent) cycle
