@@ -1,5 +1,10 @@
-/* METIS's nested dissection behind plain integers. */
+/* METIS's nested dissection behind plain integers.
+ *
+ * METIS catches SIGTERM while it works, gives up and returns METIS_ERROR. Each function below then
+ * asks METIS once more. If METIS now succeeds, a signal has stopped it, and the program gets the
+ * signal afterwards. */
 #include <metis.h>
+#include <signal.h>
 #include <stddef.h>
 #include <stdlib.h>
 
@@ -22,6 +27,10 @@ int keyway_nested_dissection(int n, int *start, int *neighbour, int *weight, int
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_UFACTOR] = unbalance;
   status = METIS_NodeND(&n, start, neighbour, weight, options, order, place);
+  if (status == METIS_ERROR) {
+    status = METIS_NodeND(&n, start, neighbour, weight, options, order, place);
+    if (status == METIS_OK) raise(SIGTERM);
+  }
   free(place);
   return status == METIS_OK ? 0 : 1;
 }
@@ -40,6 +49,11 @@ int keyway_divide_mesh(int num_elements, int num_nodes, int *first, int *node, i
   options[METIS_OPTION_NUMBERING] = 0;
   status = METIS_PartMeshDual(&num_elements, &num_nodes, first, node, weight, NULL, &common,
                               &num_parts, NULL, options, &cut, part, part_of_node);
+  if (status == METIS_ERROR) {
+    status = METIS_PartMeshDual(&num_elements, &num_nodes, first, node, weight, NULL, &common,
+                                &num_parts, NULL, options, &cut, part, part_of_node);
+    if (status == METIS_OK) raise(SIGTERM);
+  }
   free(part_of_node);
   return status == METIS_OK ? 0 : 1;
 }
