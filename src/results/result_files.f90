@@ -125,7 +125,9 @@ contains
     self%num_checkpoints = found%number
     self%is_from_old = found%is_old
     self%num_warnings_printed = found%num_warnings
-    self%has_unwritten_envelopes = size(self%record%active) > 0 .and. .not. now%is_last_of_step
+    self%has_unwritten_envelopes = size(self%record%active) > 0 &
+                                   .and. .not. now%is_last_of_step &
+                                   .and. now%step == self%record%step
   end subroutine load
 
   !> Sets all files back to the checkpoint that was loaded, and opens them.
@@ -191,8 +193,8 @@ contains
     wants_motion = is_asked_to_stop() .or. needs_nodes(model, now, self%record)
   end function wants_motion
 
-  !> Writes a checkpoint where one is due, and ends the run where a signal asks to stop. The start
-  !> of a step is no place to go on from.
+  !> Writes a checkpoint where one is due, and ends the run where a signal asks to stop. At the
+  !> start of a step a signal waits for the first increment.
   subroutine keep_or_stop(self, model, now, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -231,17 +233,12 @@ contains
     type(state), intent(in) :: now !< as it was accepted
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: place
-    place = " of step '"//model%steps(now%step)%name//"'"
-    if (now%increment == 0) then
-      call raise(error, 'stopped by '//name_of_signal()//' in the first increment'//place// &
-                 ', which is dropped; keyway --continue goes on from the last checkpoint, if '// &
-                 'there is one')
-      return
-    end if
     call self%keep(model, now, error)
     if (allocated(error)) return
-    call raise(error, 'stopped by '//name_of_signal()//' after increment '// &
-               as_text(now%increment)//place//', time '//as_text(now%total_time)// &
+    place = 'after increment '//as_text(now%increment)
+    if (now%increment == 0) place = 'at the start'
+    call raise(error, 'stopped by '//name_of_signal()//' '//place//" of step '"// &
+               model%steps(now%step)%name//"', time "//as_text(now%total_time)// &
                '; the next increment is dropped; keyway --continue goes on from here')
   end subroutine increment_dropped
 

@@ -10,9 +10,17 @@ import time
 from pathlib import Path
 
 import pytest
-from restart_case import deck, differences, kill_at, start
+from restart_case import LAST, deck, differences, kill_at, start
 
 UMAT = Path(__file__).resolve().parents[2] / "input" / "umat" / "plastic_j2.f90"
+RESTART = "*RESTART, WRITE, FREQUENCY=4\n"
+STILL = """*STEP, NAME=STILL
+*STATIC
+0.1, 1.
+*CLOAD
+TOP, 3, -1e4
+*END STEP
+"""
 SLOW_PART = """  implicit none
   interface
     integer(4) function usleep(microseconds) bind(c, name='usleep')
@@ -23,13 +31,21 @@ SLOW_PART = """  implicit none
   logical :: is_slow
 """
 SLEEP = """  inquire (file='slow', exist=is_slow)
+  if (kinc == 1 .and. .not. is_slow) then
+    inquire (file='slow_'//achar(iachar('0') + kstep(1)), exist=is_slow)
+  end if
   if (is_slow) status_of_sleep = usleep(100000)
+  if (is_slow) open (unit=77, file='was_slow')
+  if (is_slow) close (77)
 """
 
 
 @pytest.fixture(scope="module")
 def slow_umat(program_path: Path, tmp_path_factory) -> Path:
-    """The UMAT of the deck; where a file 'slow' is in the folder of the run, a call takes 0.1 s."""
+    """The UMAT of the deck; where a file 'slow' is in the folder of the run, a call takes 0.1 s.
+
+    With a file 'slow_3' this holds for the first increment of step 3.
+    """
     folder = tmp_path_factory.mktemp("umat")
     text = UMAT.read_text()
     first = text.index("  implicit none\n")
@@ -81,21 +97,28 @@ def test_a_long_increment_is_dropped(program_path, slow_umat, tmp_path, controls
     assert differences(whole, out) == []
 
 
-def test_a_signal_in_the_first_increment(program_path, slow_umat, tmp_path):
-    """The increment is dropped or finished; without one that is finished there is no checkpoint."""
-    path, out = tmp_path / "job.inp", tmp_path / "out"
-    path.write_text(deck())
-    (tmp_path / "slow").touch()
-    process = start(
-        program_path, "-q", "-j", "1", "--umat", slow_umat, "-o", out, path, cwd=tmp_path
-    )
-    while not (out / "job.json").exists():
+@pytest.mark.parametrize(
+    ("step", "name"), [(1, "WEIGHT"), (3, "QUAKE"), (4, "AFTER"), (5, "STILL")]
+)
+def test_a_signal_in_the_first_increment(program_path, slow_umat, tmp_path, step, name):
+    """Without *RESTART: the checkpoint is that of the start of the step."""
+    path, out, whole = tmp_path / "job.inp", tmp_path / "out", tmp_path / "whole"
+    path.write_text(deck(last=LAST.format(force=100) + STILL).replace(RESTART, ""))
+    arguments = ["-q", "-j", "1", "--umat", slow_umat]
+    subprocess.run([program_path, *arguments, "-o", whole, path], check=True, cwd=tmp_path)
+    (tmp_path / f"slow_{step}").touch()
+    process = start(program_path, *arguments, "-o", out, path, cwd=tmp_path)
+    # The laws are called before the files of the run are opened, too.
+    while not ((tmp_path / "was_slow").exists() and (out / "job.json").exists()):
         assert process.poll() is None
         time.sleep(0.01)
     process.send_signal(signal.SIGTERM)
     _, text = process.communicate(timeout=60)
+    (tmp_path / f"slow_{step}").unlink()
     assert process.returncode == 1, text
     message = json.loads((out / "job.json").read_text())["message"]
-    first = "stopped by SIGTERM in the first increment of step 'WEIGHT', which is dropped"
-    assert (first in message) == (not list(out.glob("*.ckpt.h5")))
-    assert first in message or "stopped by SIGTERM after increment 1 of step 'WEIGHT'" in message
+    places = ("at the start", "after increment 1")  # an iteration that converges is not dropped
+    assert any(f"stopped by SIGTERM {place} of step '{name}'" in message for place in places)
+    arguments += ["--continue", "-o", out, path]
+    subprocess.run([program_path, *arguments], check=True, cwd=tmp_path)
+    assert differences(whole, out) == []

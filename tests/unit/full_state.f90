@@ -65,6 +65,7 @@ contains
     call fill(status%cutbacks, n)
     call fill(status%num_unknowns, n)
     call fill(status%has_held_switches, n)
+    call fill(status%has_opened_step, n)
     call fill(status%is_last_of_step, n)
     call fill(status%is_stop, n)
     call fill(status%step_time, n)

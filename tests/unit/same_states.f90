@@ -89,6 +89,7 @@ contains
     call compare(log, what//'cutbacks', a%cutbacks, b%cutbacks)
     call compare(log, what//'num_unknowns', a%num_unknowns, b%num_unknowns)
     call compare(log, what//'has_held_switches', a%has_held_switches, b%has_held_switches)
+    call compare(log, what//'has_opened_step', a%has_opened_step, b%has_opened_step)
     call compare(log, what//'is_last_of_step', a%is_last_of_step, b%is_last_of_step)
     call compare(log, what//'is_stop', a%is_stop, b%is_stop)
     call compare(log, what//'step_time', a%step_time, b%step_time)

@@ -58,7 +58,7 @@ contains
     now%num_unknowns = system%matrix%num_free
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
     call keep_joints(last, plan, system%operator%num_points, now)
-    if (now%increment == 0) call take_unknowns(model, system, now%step, last)
+    if (.not. now%has_opened_step) call take_unknowns(model, system, now%step, last)
     call solids%open(model, system, plan, now)
   end subroutine build_dynamic_step
 
@@ -108,7 +108,7 @@ contains
     call results%costs%start('recover', 'energy', 'solver')
     call open_account(model, system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call results%costs%stop()
-    if (now%increment == 0) then ! not after a restart within the step
+    if (.not. now%has_opened_step) then
       call store_motion(system%numbers, now)
       call results%report_increment(model, now, error)
       if (allocated(error)) return
@@ -164,11 +164,13 @@ contains
       call sum_contact(system%operator, now)
       if (goes_on) then
         call keep_accelerations(last, own)
-        if (now%increment == 0) call change_acceleration(model, system, plan, last, now, error)
+        if (.not. now%has_opened_step) then
+          call change_acceleration(model, system, plan, last, now, error)
+        end if
         call multiply(system%matrix, system%mass, own%a, own%inertia)
         own%balanced = own%inertia + (last%balanced - last%inertia)
       else
-        if (now%increment == 0) call start_anew(model, system, plan, now, error)
+        if (.not. now%has_opened_step) call start_anew(model, system, plan, now, error)
         call multiply(system%matrix, system%mass, own%a, own%inertia)
         own%balanced = own%inertia
       end if

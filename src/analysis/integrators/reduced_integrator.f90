@@ -84,7 +84,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(modal_motion) :: loaded
     type(motion) :: last
-    if (now%increment > 0) loaded = now%motion%modal
+    if (now%has_opened_step) loaded = now%motion%modal
     call build_dynamic_step(model, plan, self%system, self%solids, now, last, results, error)
     if (allocated(error)) return
     now%motion%modal = loaded
@@ -100,7 +100,7 @@ contains
     if (allocated(error)) return
     call find_followed(plan, self%system, self%basis, now%motion%modal%start, self%solvers, &
                        self%followed, error)
-    if (allocated(error) .or. now%increment > 0) return
+    if (allocated(error) .or. now%has_opened_step) return
     call open_account(model, self%system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call store_motion(self%system%numbers, now)
     call results%report_increment(model, now, error)
@@ -203,10 +203,10 @@ contains
     integer :: wanted
     wanted = plan%reduced%num_modes
     if (wanted == 0) wanted = first_guess
-    if (now%increment > 0) wanted = now%reduction%num_shapes
+    if (now%has_opened_step) wanted = now%reduction%num_shapes
     do
       call build_basis_of(self, model, plan, wanted, results, error)
-      if (allocated(error) .or. now%increment > 0) return
+      if (allocated(error) .or. now%has_opened_step) return
       call start_modes(self, now)
       estimate = not_known
       if (plan%reduced%num_modes == 0 .or. plan%controls%estimates_errors) then

@@ -124,7 +124,7 @@ contains
     call self%loss%open(model, plan)
     if (.not. self%has_inelastic()) return
     is_kept = goes_on .and. allocated(last%lost_damping)
-    if (is_kept .and. now%increment == 0) then ! else the motion is that of this step
+    if (is_kept .and. .not. now%has_opened_step) then ! else the motion is that of this step
       is_kept = self%loss%is_same(model, model%steps(step_before(model%steps, now%step)))
     end if
     if (is_kept) then

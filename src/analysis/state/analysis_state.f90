@@ -73,6 +73,7 @@ module analysis_state
     integer :: cutbacks = 0 !< in this step so far
     integer :: num_unknowns = 0 !< free unknowns of the step's system
     logical :: has_held_switches = .false. !< in this increment, of laws with discontinuous stress
+    logical :: has_opened_step = .false. !< the integrator: a loaded state goes on within the step
     logical :: is_last_of_step = .false.
     logical :: is_stop = .false. !< the run stops at this increment, before the end of its step
     real(rk) :: step_time = 0.0_rk, total_time = 0.0_rk, increment_size = 0.0_rk !< [s]

@@ -49,7 +49,7 @@ contains
     integer :: i
     do i = first_step(now), size(model%steps)
       call make_integrator(model%steps(i)%procedure, method)
-      if (i == now%step .and. now%increment > 0) then
+      if (i == now%step .and. now%has_opened_step) then
         call show_stage(model, i)
         call reopen_step(model, model%steps(i), method, now, results, error)
       else
@@ -59,6 +59,7 @@ contains
         call method%open_step(model, model%steps(i), now, results, error)
       end if
       if (allocated(error)) return
+      now%has_opened_step = .true.
       if (method%system%matrix%is_shared) then
         call results%log%say("step '"//model%steps(i)%name//"': "// &
                              method_of_step(model, model%steps(i), method%system%matrix))
@@ -117,6 +118,7 @@ contains
     now%step_time = 0.0_rk
     now%increment_size = 0.0_rk
     now%residual = 0.0_rk
+    now%has_opened_step = .false.
     now%is_last_of_step = .false.
     now%step_start = now%total_time
     now%matrix = last_matrix()
@@ -128,9 +130,9 @@ contains
     end associate
   end subroutine enter_step
 
-  !> Opens a step in its middle, for a state that was loaded. The integrator builds the equations
-  !> with supports where they stood at the start of the step. What the integrator computes of motion
-  !> and energies belongs to a start: the loaded state replaces it.
+  !> Opens a step for a state that was loaded, of its start or its middle. The integrator builds the
+  !> equations with supports where they stood at the start of the step. What the integrator computes
+  !> of motion and energies belongs to a start: the loaded state replaces it.
   subroutine reopen_step(model, plan, method, now, results, error)
     type(problem), intent(in) :: model
     type(step), intent(in) :: plan
@@ -247,21 +249,11 @@ contains
     call method%start_increment(model, plan, size, results, error)
     if (allocated(error)) return
     call method%solids%open_increment(now, size)
-    method%solids%solver%controls%may_be_dropped = may_be_dropped(model, now)
+    method%solids%solver%controls%may_be_dropped = .true.
     next%trial%increment_status = now%increment_status
     call warm(model, plan, next%when, now, next%trial, method%system, results%costs)
     call method%advance(model, next%when, now, next%trial, results, next%outcome, error)
   end subroutine try_increment
-
-  !> Whether a continued run can go on without the increment after `now`. The start of a step is no
-  !> checkpoint: then there must be one at the end of the step before, or nothing to lose.
-  pure logical function may_be_dropped(model, now)
-    type(problem), intent(in) :: model
-    type(state), intent(in) :: now
-    may_be_dropped = now%increment > 0 .or. now%step == 1
-    if (may_be_dropped) return
-    may_be_dropped = model%steps(now%step - 1)%checkpoint_frequency > 0
-  end function may_be_dropped
 
   !> The trial becomes the converged state.
   subroutine accept(model, plan, method, now, next, results, error)
