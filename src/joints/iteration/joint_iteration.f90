@@ -31,14 +31,16 @@ module joint_iteration
     type(joint_state), pointer :: old(:) => null() !< converged histories
     type(joint_state), pointer :: new(:) => null() !< histories of the last evaluation
     type(joint_field) :: field !< jumps, tractions and tangents of the last evaluation
+    real(rk) :: step = 0.0_rk !< norm of the last correction of all jumps [m]
     type(balance_outcome) :: outcome
   contains
     procedure :: view
   end type joint_increment
 
-  !> Residuals of one run of Newton's iteration.
+  !> Residuals and corrections of one run of Newton's iteration.
   type :: iteration_history
     real(rk), allocatable :: unbalance(:) !< of its iterations
+    real(rk), allocatable :: step(:) !< norms of their corrections [m]
     integer :: least = 1 !< iteration with the least of them
     logical :: has_ended = .false. !< it has converged, cycles or gives up
   end type iteration_history
@@ -55,13 +57,10 @@ module joint_iteration
   real(rk), parameter :: first_share = 0.3_rk
   !> Round-off of an opening, over the norm of all jumps.
   real(rk), parameter :: touching = 1.0e-10_rk
-  !> A cycle repeats its residuals to this fraction of them; longest cycle that is looked for.
-  real(rk), parameter :: same_residual = 0.02_rk
+  !> A cycle repeats its residuals and corrections to this fraction of them; longest cycle that is
+  !> looked for.
+  real(rk), parameter :: same_size = 0.02_rk
   integer, parameter :: longest_cycle = 6
-  !> Where the forces of an iterate are far from those of the solution, all residuals are 1. They
-  !> repeat although the iterates differ: so many of them are no cycle yet.
-  real(rk), parameter :: saturated = 0.9_rk
-  integer, parameter :: patience = 15
   !> Floor of the joint forces in the residual, as a fraction of the reference force of the bulk.
   real(rk), parameter :: smallest_share = 1.0e-6_rk
   !> Most passes of the augmented Lagrangian in an increment. About 5 are needed where the structure
@@ -188,26 +187,26 @@ contains
     real(rk), intent(in) :: correction(:, :) !< (3, points) of the jumps [m]
     real(rk), intent(in) :: linear(:, :) !< (3, points) tractions of the solution [Pa]
     type(joint_increment), intent(inout) :: now
+    now%step = norm(correction)
     now%field%response = now%field%jump + correction
     now%field%jump = now%field%response
     now%field%multiplier = linear
     call linearise(now)
   end subroutine take_step
 
-  !> Whether the residuals of the last iterations repeat those before them, with any period. The
-  !> iteration then takes the same states again and does not converge.
-  pure logical function is_cycling(residual)
-    real(rk), intent(in) :: residual(:) !< of the iterations so far
+  !> Whether a measure of the last iterations repeats the values before them, with any period.
+  pure logical function is_repeated(measure)
+    real(rk), intent(in) :: measure(:) !< of the iterations so far
     integer :: period, n
-    n = size(residual)
-    is_cycling = .false.
+    n = size(measure)
+    is_repeated = .false.
     do period = 1, min(longest_cycle, n/3)
-      associate (last => residual(n - 2*period + 1:n), &
-                 before => residual(n - 3*period + 1:n - period))
-        is_cycling = is_cycling .or. all(abs(last - before) <= same_residual*last)
+      associate (last => measure(n - 2*period + 1:n), &
+                 before => measure(n - 3*period + 1:n - period))
+        is_repeated = is_repeated .or. all(abs(last - before) <= same_size*last)
       end associate
     end do
-  end function is_cycling
+  end function is_repeated
 
   !> Whether Newton's iteration goes on: up to the number of *CONTROLS, and beyond it while the
   !> residual decreases.
@@ -223,11 +222,13 @@ contains
     end associate
   end function goes_on
 
-  !> Ends an iteration: augments the contact of joints in equilibrium, and looks for cycles.
+  !> Ends an iteration: augments the contact of joints in equilibrium, and looks for cycles. A cycle
+  !> takes the same states again: residuals and corrections are repeated. A block that has left its
+  !> supports moves on with the same residuals. Residuals alone may agree far from the solution,
+  !> where all are 1, and near it, where one point changes its state after the other.
   subroutine close_iteration(now, history)
     type(joint_increment), intent(inout) :: now
     type(iteration_history), intent(inout) :: history
-    logical :: may_cycle
     integer :: iteration
     associate (outcome => now%outcome)
       if (outcome%has_converged) then
@@ -236,14 +237,18 @@ contains
         if (history%has_ended) return
       end if
       iteration = outcome%iterations - outcome%pass_start
-      if (iteration == 0) history%unbalance = [real(rk) ::]
-      if (iteration == 0) return
+      if (iteration == 0) then
+        history%unbalance = [real(rk) ::]
+        history%step = history%unbalance
+        return
+      end if
       history%has_ended = .not. ieee_is_finite(outcome%unbalance)
       if (history%has_ended) return
       history%unbalance = [history%unbalance, outcome%unbalance]
+      history%step = [history%step, now%step]
       history%least = minloc(history%unbalance, 1)
-      may_cycle = outcome%is_driven .or. outcome%unbalance <= saturated .or. iteration >= patience
-      history%has_ended = may_cycle .and. is_cycling(history%unbalance)
+      history%has_ended = is_repeated(history%unbalance) &
+                          .and. (outcome%is_driven .or. is_repeated(history%step))
       outcome%is_loose = history%has_ended .and. outcome%is_driven
     end associate
   end subroutine close_iteration

@@ -127,7 +127,7 @@ contains
     type(iteration_history) :: history
     real(rk) :: most ! of all residuals
     real(rk), dimension(3, now%operator%num_points) :: correction, linear, rest
-    allocate (history%unbalance(0))
+    allocate (history%unbalance(0), history%step(0))
     most = 0.0_rk
     self%is_rough = .false.
     associate (field => now%field, outcome => now%outcome, area => now%operator%area)

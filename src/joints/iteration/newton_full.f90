@@ -134,7 +134,7 @@ contains
     real(rk), dimension(3, now%operator%num_points) :: correction, linear, answer
     type(iteration_history) :: history
     real(rk) :: unused(size(self%x))
-    allocate (history%unbalance(0))
+    allocate (history%unbalance(0), history%step(0))
     associate (solver => self%solver, balance => self%balance, operator => now%operator, &
                field => now%field, outcome => now%outcome)
       do while (goes_on(history, now))
