@@ -241,13 +241,14 @@ contains
     call costs%stop('assemble structure')
   end subroutine build_structure
 
-  !> Where the unknowns of many joints stand in a factor: anywhere in motion, where parts of the
-  !> matrix near each group give its compliance; else each group is a separator.
+  !> Where the unknowns of joints stand in a factor: few at its end. Many stand anywhere in motion,
+  !> where parts of the matrix near each group give its compliance; else each group is a separator.
   subroutine place_joints(has_inertia, system)
     logical, intent(in) :: has_inertia
     type(dam_system), intent(inout) :: system
     associate (matrix => system%matrix)
-      matrix%orders_freely = has_inertia .and. .not. fits_the_end(system%operator, matrix%num_free)
+      if (fits_the_end(system%operator, matrix%num_free, has_inertia)) return
+      matrix%orders_freely = has_inertia
       if (matrix%orders_freely) then
         matrix%num_last = 0
         return

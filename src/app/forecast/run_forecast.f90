@@ -35,9 +35,9 @@ module run_forecast
   type(speed), parameter :: reference = speed(products=5.8e10_rk, sweeps=2.8e9_rk)
   integer, parameter :: most_planned = 300000 !< unknowns of a model whose factor is planned
   integer, parameter :: width_of_names = 24 !< in lines of the forecast
-  !> Points of joints that stay together at the end of the factor; of more points each group is a
-  !> separator, and the inverse of the factor is kept in its pattern for a moment.
-  real(rk), parameter :: most_at_the_end = 1500.0_rk
+  !> Points of joints that stay together at the end of the factor. Of more points in statics each
+  !> group is a separator, and the inverse of the factor is kept in its pattern for a moment.
+  real(rk), parameter :: most_in_motion = 1500.0_rk, most_in_statics = 3000.0_rk
   real(rk), parameter :: busy = 1.5_rk !< times as slow as ever measured: it is said
 
   ! On the reference machine [s].
@@ -209,7 +209,7 @@ contains
     laws = iterations*spread*law_time*counts%law_points
     increment = solve + products_time*counts%unknowns &
                 + counts%points &
-                *(point_time + pair_time*min(counts%points, most_at_the_end)) &
+                *(point_time + pair_time*min(counts%points, most_at_the_end(plan))) &
                 + iterations*(solve + iteration_time*counts%unknowns)
     if (allocated(plan%envelope)) increment = increment + envelope_time*counts%unknowns
     time = time + num_planned(plan)*(output_time + share*increment + laws)
@@ -225,12 +225,18 @@ contains
     memory = program_memory + entry_memory*counts%entries + of_unknown*counts%unknowns &
              + law_memory*counts%law_points
     if (any(has_copy(steps))) memory = memory + copy_memory*counts%entries
-    if (counts%points <= most_at_the_end) then
+    if (counts%points <= maxval(most_at_the_end(steps))) then
       memory = memory + pair_memory*counts%points**2
     else
       memory = memory + inverse_memory*counts%entries + point_memory*counts%points
     end if
   end function memory_of
+
+  !> Most points of joints at the end of the factor of a step.
+  elemental real(rk) function most_at_the_end(plan)
+    type(step), intent(in) :: plan
+    most_at_the_end = merge(most_in_motion, most_in_statics, plan%procedure%has_inertia)
+  end function most_at_the_end
 
   !> Whether a step keeps a copy of the factor in single precision.
   elemental logical function has_copy(plan)

@@ -1,6 +1,6 @@
-!> Which unknowns separate the parts of the structure at joints: the jumps and the displacements
-!> that they add to, group by group. Each group is one separator in the order of elimination. In
-!> motion joints see so little of each other that the order need not keep them together.
+!> Where the unknowns of joints stand in the order of elimination: few at its end. Of many in
+!> statics each group is one separator: the jumps and the displacements that they add to. In motion
+!> joints see so little of each other that the order need not keep many of them together.
 module joint_separators
   use dof_numbering, only: numbering
   use joint_operator, only: jump_operator
@@ -9,19 +9,23 @@ module joint_separators
   private
   public :: find_separators, fits_the_end
 
-  !> Up to so many unknowns of joints stay together at the end of the factor.
-  integer, parameter :: most_at_the_end = 4500
+  !> Up to so many unknowns of joints stay together at the end of the factor. The compliance is then
+  !> known as a whole: in statics joints see each other far, and the iteration may not converge
+  !> without the blocks between distant ones.
+  integer, parameter :: most_in_motion = 4500, most_in_statics = 9000
 
 contains
 
   !> Whether the unknowns of joints are few enough for the end of the factor, which is dense.
-  pure logical function fits_the_end(operator, num_free)
+  pure logical function fits_the_end(operator, num_free, has_inertia)
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: num_free
-    fits_the_end = count(operator%unknown <= num_free) <= most_at_the_end
+    logical, intent(in) :: has_inertia
+    fits_the_end = count(operator%unknown <= num_free) &
+                   <= merge(most_in_motion, most_in_statics, has_inertia)
   end function fits_the_end
 
-  !> Group of each free unknown, 0 for none; not allocated where joints have few unknowns.
+  !> Group of each free unknown, 0 for none.
   subroutine find_separators(numbers, operator, group, jump, joined)
     type(numbering), intent(in) :: numbers
     type(jump_operator), intent(in) :: operator
@@ -29,7 +33,6 @@ contains
     integer, allocatable, intent(out) :: jump(:), joined(:) !< pairs: a jump adds to a displacement
     type(group_list) :: groups
     integer :: g, r, k
-    if (fits_the_end(operator, numbers%num_free)) return
     call group_points(operator%first_point, operator%x, groups)
     allocate (group(numbers%num_free), source=0)
     do g = 1, groups%num_groups

@@ -5,11 +5,14 @@
 !> W = C + 1/(weight*area*k_ref). The part of the jumps that the springs leave, openings and slips,
 !> is d = W (f_closed - f), with f the forces of the points, f_closed those of closed joints. A
 !> sweep visits all points and gives each the force for which its d agrees with contact and friction
-!> while the other forces of its group stay, and the d of other groups.
+!> while the other forces of its group stay, and the d of other groups. Several groups are visited
+!> in turn, each until its forces change little: block Gauss-Seidel on the d of groups, with the
+!> matrix W^-1. With one sweep over each group it diverges where groups see each other strongly.
 module contact_sweeps
   use block_compliance, only: compliance_blocks
   use contact_scaling, only: open_group
   use coupling_block, only: add_product
+  use global_vectors, only: distance
   use joint_forces, only: joint_field
   use joint_iteration, only: joint_increment
   use joint_law, only: is_bare, state_bonded
@@ -29,6 +32,11 @@ module contact_sweeps
     real(rk), allocatable :: slip(:, :) !< (2, points) converged [m]
     logical, allocatable :: is_bonded(:)
   end type swept_points
+
+  !> Sweeps over a group among several, at most, and the change of its forces over that of the first
+  !> one that ends them.
+  integer, parameter :: most_visits = 20
+  real(rk), parameter :: settled = 0.02_rk
 
 contains
 
@@ -80,8 +88,9 @@ contains
           if (size(opened) > 1 .or. sweep == 1) then
             call find_rest(blocks, opened(g), g, points, closed_jump, force, d)
           end if
-          call sweep_group(opened(g)%compliance, blocks%groups%members(g), points, &
-                           mod(sweep, 2) == 1, force, d, field)
+          call settle_group(opened(g)%compliance, blocks%groups%members(g), points, &
+                            merge(1, most_visits, size(opened) == 1), mod(sweep, 2) == 1, &
+                            force, d, field)
         end if
         if (blocks%groups%is_divided()) call share_group(blocks, g, force, d)
       end do
@@ -137,6 +146,27 @@ contains
       d(:, point) = reshape(answer, [3, size(point)])
     end associate
   end subroutine find_rest
+
+  !> Sweeps over a group until its forces change little.
+  subroutine settle_group(compliance, point, points, most, is_forward, force, d, field)
+    real(rk), intent(in) :: compliance(:, :) !< C (rows, rows) of the group [m/N]
+    integer, intent(in) :: point(:) !< of the group
+    type(swept_points), intent(in) :: points
+    integer, intent(in) :: most !< sweeps
+    logical, intent(in) :: is_forward !< the first sweep
+    real(rk), intent(inout) :: force(:, :) !< (3, points) [N]
+    real(rk), intent(inout) :: d(:, :) !< (3, points) [m]
+    type(joint_field), intent(in) :: field
+    real(rk) :: before(3, size(point)), change, first
+    integer :: k
+    do k = 1, most
+      before = force(:, point)
+      call sweep_group(compliance, point, points, is_forward .eqv. mod(k, 2) == 1, force, d, field)
+      change = distance(force(:, point), before)
+      if (k == 1) first = change
+      if (change <= settled*first) return
+    end do
+  end subroutine settle_group
 
   !> Visits the points of a group.
   subroutine sweep_group(compliance, point, points, is_forward, force, d, field)

@@ -43,7 +43,6 @@ module joint_policy
     real(rk), allocatable :: force(:, :) !< (3, points) of the last iterate, then of sweeps [N]
     real(rk), allocatable :: x(:) !< (all unknowns) of the last iterate, in solvers that have it
     integer, allocatable :: num_sweeps(:) !< before each of Newton's iterations
-    logical :: sweeps_diverge = .false. !< in this increment
     type(error_type), allocatable :: failure !< of the linear solver
   contains
     procedure(run_newton), deferred :: run_newton
@@ -82,10 +81,6 @@ module joint_policy
   !> the passes do not converge.
   integer, parameter :: first_sweeps(3) = [40, 80, 160], last_sweeps(3) = [320, 640, 1280]
 
-  !> Sweeps diverge where the residual was at most `near` before them, and is at least `lost` after
-  !> Newton's iteration from them.
-  real(rk), parameter :: near = 0.1_rk, lost = 0.5_rk
-
   !> Most passes of Tresca's fixed point, and the changes of the limits of friction, over the
   !> limits, at which Newton's iteration with the laws is tried.
   integer, parameter :: most_passes = 30
@@ -98,7 +93,6 @@ contains
   subroutine iterate_joints(process, now)
     class(joint_process), intent(inout) :: process
     type(joint_increment), intent(inout) :: now !< linearised
-    process%sweeps_diverge = .false.
     call find_equilibrium(process, now)
     if (.not. now%outcome%has_converged) return
     call try_full_laws(process, now)
@@ -149,7 +143,7 @@ contains
     call linearise_anew(process, now)
     call process%run_newton(now)
     if (.not. is_done(process, now)) then
-      if (now%field%is_static .and. can_sweep(process)) then
+      if (now%field%is_static .and. allocated(process%opened)) then
         call process%find_closed(now%operator)
         now%field%scale = process%scale
         now%field%num_openings = 0
@@ -183,32 +177,20 @@ contains
     if (now%outcome%has_converged) now%field%iterate = linear
   end subroutine judge_by_laws
 
-  !> Sweeps and Newton's iteration in turn, until it converges or drives a block away twice. Sweeps
-  !> that lead away from an equilibrium that was near change nothing, and are given up: they may
-  !> where there are several groups of points, between which blocks of the compliance are left out.
+  !> Sweeps and Newton's iteration in turn, until it converges or drives a block away twice.
   subroutine try_sweeps(process, now)
     class(joint_process), intent(inout) :: process
     type(joint_increment), intent(inout) :: now
-    type(joint_field) :: kept_field
-    real(rk) :: kept_force(3, now%operator%num_points)
-    logical :: was_loose, was_near
+    logical :: was_loose
     integer :: k
-    if (.not. can_sweep(process)) return
-    was_near = now%outcome%residual <= near .and. size(process%opened) > 1
-    kept_field = now%field
-    kept_force = process%force
+    if (.not. allocated(process%opened)) return
     do k = 1, size(process%num_sweeps)
       was_loose = now%outcome%is_loose
       call run_sweeps(process, process%num_sweeps(k), now)
       call process%run_newton(now)
       if (is_done(process, now) .or. (was_loose .and. now%outcome%is_loose)) return
       now%outcome%is_loose = now%outcome%is_loose .and. k < size(process%num_sweeps)
-      process%sweeps_diverge = was_near .and. now%outcome%residual >= lost
-      if (process%sweeps_diverge) exit
     end do
-    if (.not. process%sweeps_diverge) return
-    now%field = kept_field
-    process%force = kept_force
   end subroutine try_sweeps
 
   !> Whether nothing is left to do.
@@ -218,12 +200,6 @@ contains
     is_done = now%outcome%has_converged .or. now%outcome%gives_up .or. allocated(process%failure)
     if (.not. is_done) is_done = is_dropped(now%controls)
   end function is_done
-
-  !> Whether sweeps may find what Newton's iteration has not.
-  pure logical function can_sweep(process)
-    class(joint_process), intent(in) :: process
-    can_sweep = allocated(process%opened) .and. .not. process%sweeps_diverge
-  end function can_sweep
 
   !> Jumps that tractions cause with closed joints.
   function jumps_of(process, area, traction) result(jump)
@@ -292,14 +268,14 @@ contains
     now%outcome%has_converged = .false.
   end subroutine run_passes
 
-  !> Limits of friction of the first pass: those of the last sweeps, of the last iterate where
-  !> sweeps diverge, or of the last increment.
+  !> Limits of friction of the first pass: those of the last sweeps, else of the last increment.
   subroutine start_passes(process, now)
     class(joint_process), intent(inout) :: process
     type(joint_increment), intent(inout) :: now
     type(swept_points) :: points
-    if (can_sweep(process)) call run_sweeps(process, 1, now)
-    if (.not. allocated(process%opened)) then
+    if (allocated(process%opened)) then
+      call run_sweeps(process, 1, now)
+    else
       now%field%multiplier = now%k_ref*now%field%start_spring
       now%field%jump = now%field%start_jump
     end if
