@@ -43,6 +43,7 @@ module result_files
     type(progress_clock) :: clock
     real(rk), private :: summarised_at = 0.0_rk !< wall clock [s]
     integer, private :: num_warnings_printed = 0, num_checkpoints = 0
+    integer, private :: last_ended = -1 !< step whose end is the last checkpoint, -1: another moment
     logical :: is_from_old = .false. !< the last checkpoint is damaged
     type(writer_item), allocatable, private :: writers(:)
   contains
@@ -88,7 +89,7 @@ contains
     call self%costs%stop()
   end subroutine prepare
 
-  !> Opens all files of a new run; those of an earlier run are removed.
+  !> Opens all files of a new run, and removes those of an earlier one.
   subroutine open_results(self, model, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -123,11 +124,11 @@ contains
     self%record = found%record
     self%summary = found%summary
     self%num_checkpoints = found%number
+    self%last_ended = merge(now%step, -1, now%is_last_of_step)
     self%is_from_old = found%is_old
     self%num_warnings_printed = found%num_warnings
-    self%has_unwritten_envelopes = size(self%record%active) > 0 &
-                                   .and. .not. now%is_last_of_step &
-                                   .and. now%step == self%record%step
+    self%has_unwritten_envelopes = .not. now%is_last_of_step .and. now%step == self%record%step &
+                                   .and. size(self%record%active) > 0
   end subroutine load
 
   !> Sets all files back to the checkpoint that was loaded, and opens them.
@@ -223,17 +224,19 @@ contains
     call save_checkpoint(self%stem, self%num_checkpoints + 1, model, now, self%record, &
                          self%summary, self%writers, error)
     self%num_checkpoints = self%num_checkpoints + 1
+    self%last_ended = merge(now%step, -1, now%is_last_of_step)
     call self%costs%stop()
   end subroutine keep
 
-  !> A signal has ended the increment after `now`: writes the checkpoint, and ends the run.
+  !> A signal has ended the increment after `now`: writes the checkpoint, and ends the run. A
+  !> checkpoint of the end of the step before is kept: a continued run may change the step.
   subroutine increment_dropped(self, model, now, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now !< as it was accepted
     type(error_type), allocatable, intent(out) :: error
     character(:), allocatable :: place
-    call self%keep(model, now, error)
+    if (now%increment > 0 .or. self%last_ended /= now%step - 1) call self%keep(model, now, error)
     if (allocated(error)) return
     place = 'after increment '//as_text(now%increment)
     if (now%increment == 0) place = 'at the start'

@@ -122,3 +122,25 @@ def test_a_signal_in_the_first_increment(program_path, slow_umat, tmp_path, step
     arguments += ["--continue", "-o", out, path]
     subprocess.run([program_path, *arguments], check=True, cwd=tmp_path)
     assert differences(whole, out) == []
+
+
+def test_a_step_that_has_not_begun_may_be_changed(program_path, slow_umat, tmp_path):
+    """With *RESTART the checkpoint of the end of the step before is kept."""
+    path, out = tmp_path / "job.inp", tmp_path / "out"
+    cards = deck(last=LAST.format(force=100) + STILL)
+    path.write_text(cards)
+    arguments = ["-q", "-j", "1", "--umat", slow_umat]
+    (tmp_path / "slow_5").touch()
+    process = start(program_path, *arguments, "-o", out, path, cwd=tmp_path)
+    while not (tmp_path / "was_slow").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    _, text = process.communicate(timeout=60)
+    (tmp_path / "slow_5").unlink()
+    assert "stopped by SIGTERM at the start of step 'STILL'" in text
+    path.write_text(cards.replace("TOP, 3, -1e4", "TOP, 3, -5e3"))
+    subprocess.run(
+        [program_path, *arguments, "--continue", "-o", out, path], check=True, cwd=tmp_path
+    )
+    assert json.loads((out / "job.json").read_text())["status"] == "finished"
