@@ -11,11 +11,28 @@ module block_compliance
   use ranks, only: add_over_ranks
   implicit none
   private
-  public :: compliance_blocks, few_points, take_blocks, own_size
+  public :: compliance_blocks, exact_response, few_points, take_blocks, own_size
 
   !> One thread inverts the dense matrices of so few points in some milliseconds. Threads of LAPACK
   !> would change the last digits of their entries.
   integer, parameter :: few_points = 200
+
+  !> The whole compliance as an operator, for blocks that leave too much of it out.
+  type, abstract :: exact_response
+  contains
+    procedure(respond), deferred :: respond
+  end type exact_response
+
+  abstract interface
+    !> y = G x.
+    subroutine respond(self, x, y)
+      import :: exact_response, rk
+      implicit none
+      class(exact_response), intent(inout) :: self
+      real(rk), intent(in) :: x(:) !< (rows) [N]
+      real(rk), intent(out) :: y(:) !< (rows) [m]
+    end subroutine respond
+  end interface
 
   type :: compliance_blocks
     type(group_list) :: groups
@@ -25,6 +42,7 @@ module block_compliance
     !> Largest coupling that is left out, in blocks or in their accuracy; huge if it is not known
     real(rk) :: left_out = 0.0_rk
     type(response_memory) :: learned !< of what is left out
+    class(exact_response), pointer :: exact => null() !< in the place of products with the blocks
   contains
     procedure :: start, put, put_coupling, has_block, add_block, product, couple, learn
     procedure :: num_entries, as_dense
@@ -152,11 +170,15 @@ contains
     end if
   end subroutine add_block
 
-  !> y = G x with what is known of the blocks that are left out.
+  !> y = G x: exactly, or with what is known of the blocks that are left out.
   subroutine product(self, x, y)
     class(compliance_blocks), intent(in) :: self
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(out) :: y(:) !< (rows) [m]
+    if (associated(self%exact)) then
+      call self%exact%respond(x, y)
+      return
+    end if
     call multiply_blocks(self, x, y)
     call self%learned%add_to(x, y)
   end subroutine product

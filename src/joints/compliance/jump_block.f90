@@ -4,6 +4,7 @@
 !> forward and backward substitution.
 module jump_block
   use errors, only: error_type
+  use block_compliance, only: exact_response
   use factor_top, only: top_of_factor
   use kinds, only: rk
   use matrix_pattern, only: pattern
@@ -13,7 +14,7 @@ module jump_block
   use dense_factor, only: invert_from_lower, solve_lower, solve_lower_transposed
   implicit none
   private
-  public :: jump_schur_block, extract_schur_block, schur_compliance
+  public :: jump_schur_block, schur_response, extract_schur_block, schur_compliance
 
   type :: jump_schur_block
     logical :: is_there = .false.
@@ -25,7 +26,38 @@ module jump_block
     procedure :: store_jumps, add_jump_forces
   end type jump_schur_block
 
+  !> G as an operator: forward and backward substitution in the Schur block.
+  type, extends(exact_response) :: schur_response
+    type(jump_schur_block), pointer :: jumps => null()
+    type(jump_operator), pointer :: operator => null()
+    integer :: num_total = 0 !< unknowns
+    type(error_type), allocatable :: failure
+  contains
+    procedure :: respond
+  end type schur_response
+
 contains
+
+  !> y = G x; zero after a failure.
+  subroutine respond(self, x, y)
+    class(schur_response), intent(inout) :: self
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(out) :: y(:) !< (rows) [m]
+    real(rk) :: work(self%num_total), half(self%jumps%num_free), jump(3, self%operator%num_points)
+    y = 0.0_rk
+    if (allocated(self%failure)) return
+    work = 0.0_rk
+    half = 0.0_rk
+    jump = reshape(x, shape(jump))/spread(self%operator%area, 1, 3)
+    call self%operator%add_forces(jump, work)
+    call self%jumps%add_jump_forces(work, half, self%failure)
+    if (allocated(self%failure)) return
+    work = 0.0_rk
+    call self%jumps%store_jumps(half, work, self%failure)
+    if (allocated(self%failure)) return
+    call self%operator%jumps(work, jump)
+    y = reshape(jump, shape(y))
+  end subroutine respond
 
   !> Takes the top of the factor where the unknowns of joints are separators, else extracts E where
   !> all of them are eliminated last.

@@ -21,7 +21,7 @@ module condensation
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
-  use jump_block, only: jump_schur_block, extract_schur_block, schur_compliance
+  use jump_block, only: jump_schur_block, schur_response, extract_schur_block, schur_compliance
   use joint_problem, only: saved_operator, saved_problem, save_problem, free_path
   use newton_condensed, only: condensed_joints, closed_response, iterate_on_jumps, linearise_again
   use tangent_equations, only: joint_tangent
@@ -34,8 +34,10 @@ module condensation
   type, extends(equilibrium_solver) :: condensed_equilibrium
     type(condensed_joints) :: condensed
     type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
+    type(schur_response), private :: response !< G as an operator
     integer, private :: num_held = 0 !< prescribed unknowns
     logical, private :: takes_all_blocks = .false. !< of the next matrix
+    logical, private :: uses_response = .false. !< in the place of the blocks of G
     integer, private :: num_passes = 0 !< beyond the first of a solve, in time, with these blocks
     !> (3, points) excess traction of the last solution [Pa]
     real(rk), allocatable, private :: excess(:, :)
@@ -272,9 +274,13 @@ contains
     if (allocated(error)) return
     if (.not. (outcome%has_converged .or. outcome%gives_up .or. balance%is_estimate)) then
       call complete_blocks(self, size(balance%rhs), was_complete, error)
-      if (allocated(error) .or. was_complete) return
+      if (allocated(error) .or. (was_complete .and. .not. self%jumps%top%is_there)) return
       iterations = outcome%iterations
+      self%uses_response = was_complete
       call self%solve_from(balance, joints, old, new, x, outcome, error)
+      self%uses_response = .false.
+      self%condensed%blocks%exact => null()
+      if (allocated(self%response%failure)) call move_alloc(self%response%failure, error)
       outcome%iterations = outcome%iterations + iterations
     end if
     if (allocated(error) .or. .not. outcome%has_converged) return

@@ -5,6 +5,10 @@ submodule(condensation) condensed_solve
 
   !> Most corrections for the blocks of G that are left out.
   integer, parameter :: most_passes = 25
+  !> Passes in statics end where the drift of one from the fourth on is more than half of that
+  !> before.
+  integer, parameter :: patience = 4
+  real(rk), parameter :: stalled = 0.5_rk
   !> Residual of a rough equilibrium, over the largest residual or the drift before: what the blocks
   !> of G that are left out change anyway, in statics and in time.
   real(rk), parameter :: rough_in_statics = 1.0e-2_rk, rough_in_time = 2.0e-4_rk
@@ -17,6 +21,7 @@ submodule(condensation) condensed_solve
   type :: pass_history
     real(rk) :: rough = 0.0_rk !< residual of a rough equilibrium over the drift
     real(rk) :: drift(2) = 0.0_rk !< of the last pass and the one before
+    logical :: has_stalled = .false.
     logical :: learns = .false. !< what the blocks leave out, in place of Anderson's acceleration
     type(mixer) :: mixing !< Anderson's acceleration of the shift
     real(rk), allocatable :: shift(:) !< (rows) jumps by the blocks that are left out [m]
@@ -74,11 +79,13 @@ contains
         exact = field%response
         last_excess = excess
         if (field%drift <= self%admissible_drift() .and. .not. self%condensed%is_rough) exit
+        passes%has_stalled = has_stalled(pass, passes, field)
+        if (passes%has_stalled) exit
         call start_pass(self, field, passes)
         call linearise_again(self%condensed, now)
       end do
     end associate
-    outcome%has_converged = pass <= most_passes
+    outcome%has_converged = pass <= most_passes .and. .not. passes%has_stalled
     if (.not. outcome%has_converged) then
       outcome%unmet = unmet_criterion(of_jumps, now%field%drift, self%admissible_drift())
     end if
@@ -86,11 +93,32 @@ contains
     call end_solve(self, balance%is_partial, excess - last_excess, half, x, error)
   end subroutine solve_from
 
+  !> G as an operator takes the place of its blocks in products.
+  subroutine connect_response(self, num_total)
+    class(condensed_equilibrium), intent(inout), target :: self
+    integer, intent(in) :: num_total !< unknowns
+    self%response%jumps => self%jumps
+    self%response%operator => self%operator
+    self%response%num_total = num_total
+    self%condensed%blocks%exact => self%response
+  end subroutine connect_response
+
+  !> Whether the drift hardly falls from pass to pass, as in statics where the blocks that are left
+  !> out decide which points are open.
+  pure logical function has_stalled(pass, passes, field)
+    integer, intent(in) :: pass
+    type(pass_history), intent(in) :: passes
+    type(joint_field), intent(in) :: field
+    has_stalled = field%is_static .and. pass >= patience &
+                  .and. field%drift > stalled*passes%drift(1)
+  end function has_stalled
+
   !> The first pass starts from the guess.
   subroutine start_passes(self, balance, passes)
-    class(condensed_equilibrium), intent(inout) :: self
+    class(condensed_equilibrium), intent(inout), target :: self
     type(force_balance), intent(in) :: balance
     type(pass_history), intent(inout) :: passes
+    if (self%uses_response) call connect_response(self, size(balance%rhs) + self%num_held)
     self%condensed%keeps_factors = .false.
     self%condensed%rough_residual = 0.0_rk
     self%condensed%rough_share = 0.0_rk
@@ -145,7 +173,8 @@ contains
   !> Whether what is left out of G moves the jumps less than a solution may drift.
   pure logical function has_small_rest(self)
     class(condensed_equilibrium), intent(in) :: self
-    has_small_rest = self%condensed%blocks%left_out <= small_share*self%admissible_drift()
+    has_small_rest = associated(self%condensed%blocks%exact) .or. &
+                     self%condensed%blocks%left_out <= small_share*self%admissible_drift()
   end function has_small_rest
 
   !> Saves an increment as a problem of its own (--save-joint-problems).
