@@ -14,11 +14,12 @@ from restart_case import LAST, deck, differences, kill_at, start
 
 UMAT = Path(__file__).resolve().parents[2] / "input" / "umat" / "plastic_j2.f90"
 RESTART = "*RESTART, WRITE, FREQUENCY=4\n"
+# The steel yields, in 10 to 12 iterations of one increment.
 STILL = """*STEP, NAME=STILL
 *STATIC
-0.1, 1.
+1., 1.
 *CLOAD
-TOP, 3, -1e4
+TOP, 3, -1.2e4
 *END STEP
 """
 SLOW_PART = """  implicit none
@@ -139,7 +140,7 @@ def test_a_step_that_has_not_begun_may_be_changed(program_path, slow_umat, tmp_p
     _, text = process.communicate(timeout=60)
     (tmp_path / "slow_5").unlink()
     assert "stopped by SIGTERM at the start of step 'STILL'" in text
-    path.write_text(cards.replace("TOP, 3, -1e4", "TOP, 3, -5e3"))
+    path.write_text(cards.replace("TOP, 3, -1.2e4", "TOP, 3, -1.1e4"))
     subprocess.run(
         [program_path, *arguments, "--continue", "-o", out, path], check=True, cwd=tmp_path
     )
