@@ -2,14 +2,34 @@
 module arch_model
   use kinds, only: rk
   use problem_definition, only: problem
+  use joint_contraction, only: contraction_law
   use material_elastic, only: elastic_law
+  use row_model, only: add_gravity, new_step
   use joint_points, only: dam_joint, list_faces
   use step_plan, only: step_fixity
   implicit none
   private
-  public :: make_arch
+  public :: make_arch, make_heavy_arch
 
 contains
+
+  !> Three blocks with joints of one law, and a static step with their weight.
+  subroutine make_heavy_arch(law, model)
+    type(contraction_law), intent(in) :: law
+    type(problem), intent(out) :: model
+    type(step_fixity), allocatable :: fixities(:)
+    integer :: i
+    call make_arch(1, 2, 3, 3, model, fixities)
+    allocate (model%amplitudes(0), model%initial_values(0), model%steps(0))
+    do i = 1, size(model%joints)
+      model%joints(i)%name = 'J'
+      model%joints(i)%kind = 'joint'
+      allocate (model%joints(i)%law, source=law)
+    end do
+    call add_gravity(9.81_rk, model)
+    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
+    model%steps(1)%fixities = fixities
+  end subroutine make_heavy_arch
 
   !> Blocks of the same size side by side; each pair of neighbours is one joint of node pairs.
   subroutine make_arch(across, along, over, num_blocks, model, fixities)

@@ -1,6 +1,6 @@
 !> The compliance of joints as an operator, by substitutions in the Schur block, against its blocks.
 program test_jump_block
-  use arch_model, only: make_arch
+  use arch_model, only: make_heavy_arch
   use analysis_state, only: state
   use condensation, only: condensed_equilibrium
   use equilibrium, only: equilibrium_solver
@@ -10,10 +10,8 @@ program test_jump_block
   use jump_block, only: schur_response
   use kinds, only: rk
   use problem_definition, only: problem
-  use row_model, only: add_gravity, new_step
   use run_ledger, only: ledger
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
-  use step_plan, only: step_fixity
   use step_system, only: build_structure, dam_system
   use testing, only: check, check_close, test_log
   implicit none
@@ -67,22 +65,11 @@ contains
   !> An arch with frictional joints under its weight.
   subroutine make_model(model)
     type(problem), intent(inout) :: model
-    type(step_fixity), allocatable :: fixities(:)
     type(state), allocatable :: now
     type(error_type), allocatable :: error
-    integer :: i
-    call make_arch(1, 2, 3, 3, model, fixities)
-    allocate (model%amplitudes(0), model%initial_values(0), model%steps(0))
-    do i = 1, size(model%joints)
-      model%joints(i)%name = 'J'
-      model%joints(i)%kind = 'joint'
-      allocate (model%joints(i)%law, source=contraction_law(normal_stiffness=1.0e11_rk, &
-                                                            tangent_stiffness=4.0e10_rk, &
-                                                            friction=0.6_rk))
-    end do
-    call add_gravity(9.81_rk, model)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
-    model%steps(1)%fixities = fixities
+    call make_heavy_arch(contraction_law(normal_stiffness=1.0e11_rk, &
+                                         tangent_stiffness=4.0e10_rk, &
+                                         friction=0.6_rk), model)
     call start_analysis(model, now, error)
   end subroutine make_model
 end program test_jump_block

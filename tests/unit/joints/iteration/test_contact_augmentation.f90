@@ -11,8 +11,7 @@ program test_contact_augmentation
   use step_loop, only: run_all_steps
   use joint_law, only: joint_state, state_open, state_slip, state_stick
   use joint_contraction, only: contraction_law
-  use step_plan, only: step_fixity
-  use arch_model, only: make_arch
+  use arch_model, only: make_heavy_arch
   use row_model, only: add_gravity, fix, make_row, put_on_ground, shake_base, new_step, recorder
   use testing, only: test_log, check, check_close
   implicit none
@@ -107,22 +106,13 @@ contains
     type(recorder), intent(inout) :: results
     type(state), allocatable, intent(out) :: now
     type(problem) :: model
-    type(step_fixity), allocatable :: fixities(:)
     type(error_type), allocatable :: error
     type(amplitude) :: pulse
     integer :: i
-    call make_arch(1, 2, 3, 3, model, fixities)
-    allocate (model%amplitudes(0), model%initial_values(0), model%steps(0))
-    do i = 1, size(model%joints)
-      model%joints(i)%name = 'J'
-      model%joints(i)%kind = 'joint'
-      allocate (model%joints(i)%law, source=contraction_law(normal_stiffness=3.0e9_rk, &
-                                                            tangent_stiffness=4.0e10_rk, &
-                                                            friction=0.6_rk, penetration=allowed))
-    end do
-    call add_gravity(9.81_rk, model)
-    call new_step('STATIC', 1.0_rk, 1.0_rk, model)
-    model%steps(1)%fixities = fixities
+    call make_heavy_arch(contraction_law(normal_stiffness=3.0e9_rk, &
+                                         tangent_stiffness=4.0e10_rk, &
+                                         friction=0.6_rk, &
+                                         penetration=allowed), model)
     pulse%name = 'PULSE'
     pulse%time = [(0.01_rk*i, i=0, 60)]
     pulse%value = 8.0_rk*sin(20.0_rk*pulse%time)
