@@ -88,6 +88,7 @@ ROOMS = (
     "keywords/checks",
     "keywords/magnitudes",
     "keywords",
+    "app/summary",
     "app/forecast",
     "app",
 )

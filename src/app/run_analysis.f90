@@ -22,6 +22,7 @@ module run_analysis
   use step_loop, only: run_all_steps
   use shared_costs, only: share_costs
   use result_files, only: result_folder
+  use checkpoint_files, only: has_checkpoint
   use cli, only: command_line
   use model_summary, only: summary_of_joints
   use run_closing, only: closing_lines
@@ -180,6 +181,10 @@ contains
                            ') was killed')
     end if
     if (.not. given%is_continued) then
+      if (has_checkpoint(results%stem)) then
+        call results%log%say('the checkpoint of an earlier run of this job is removed, because '// &
+                             'this run starts from the beginning (without --continue)')
+      end if
       call results%open(model, error)
       return
     end if

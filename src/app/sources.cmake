@@ -7,12 +7,14 @@ set(sources
   forecast/machine_speed.f90
   forecast/run_file_sizes.f90
   forecast/run_forecast.f90
-  load_action.f90
   main.f90
-  model_summary.f90
   option_table.f90
   run_analysis.f90
   run_material.f90
   shared_costs.f90
+  summary/load_action.f90
+  summary/model_summary.f90
+  summary/step_summary.f90
+  summary/summary_rows.f90
   user_routines.f90
 )

@@ -169,6 +169,25 @@ def test_a_killed_run_is_recognised(program_path, long_deck, tmp_path, capsys):
     assert not (out / "job.lock").exists()
 
 
+def test_a_new_run_says_that_it_removes_a_checkpoint(program_path, long_deck, tmp_path):
+    """One line in the log and on the screen; none where there is no checkpoint."""
+    line = "the checkpoint of an earlier run of this job is removed"
+    out = tmp_path / "out"
+    process = start(program_path, "-q", "-o", out, long_deck)
+    kill_at(process, out / "job_energy.csv", 20, signal.SIGTERM, 0.0)
+    process.communicate()
+    assert (out / "job.ckpt.h5").exists()
+    assert line not in (out / "job.log").read_text()
+    long_deck.write_text(SHORT)
+    for expected in (True, False):
+        done = subprocess.run(
+            [program_path, "-o", out, long_deck], stderr=subprocess.PIPE, text=True, check=True
+        )
+        assert (line in done.stderr) == expected
+        assert (line in (out / "job.log").read_text()) == expected
+        assert not (out / "job.ckpt.h5").exists()
+
+
 def test_a_second_run_in_the_folder_is_refused(program_path, long_deck, tmp_path):
     out = tmp_path / "out"
     first = start(program_path, "-q", "-o", out, long_deck)

@@ -78,3 +78,10 @@ def test_twin_without_estimates_finds_the_files_of_its_deck(program_path: Path, 
         twin = write_twin(deck, tmp_path / name)
         assert "*CONTROLS, ERROR ESTIMATE=OFF" in twin.read_text()
         subprocess.run([program_path.resolve(), "--check", twin], check=True, capture_output=True)
+
+
+def test_bench_refuses_a_run_without_increments():
+    command = [sys.executable, ROOT / "tools/bench", "joints", "--increments", "0"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "--increments: 0: expected a whole number, 1 or more" in done.stderr

@@ -71,6 +71,7 @@ from cost_of_ranks import measure_ranks  # noqa: E402
 from cost_of_reduced import measure_reduced  # noqa: E402
 from cost_of_run import Figure, measure_all  # noqa: E402
 from cost_of_scale import ScaleOptions, draw_growth, measure_scale  # noqa: E402
+from keyway_tools.option_types import above_zero, count  # noqa: E402
 from measured_run import Program  # noqa: E402
 from peers.comparison_of_peers import PeerOptions, compare_peers  # noqa: E402
 
@@ -81,18 +82,18 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("what", nargs="*", metavar="run|accuracy|joints|...", help="what to measure (run)")
-    add("--sizes", type=int, nargs="+", help="unknowns of the models (48000 145000)")
-    add("--increments", type=int, default=60, help="dynamic increments (60)")
+    add("--sizes", type=count, nargs="+", help="unknowns of the models (48000 145000)")
+    add("--increments", type=count, default=60, help="dynamic increments (60)")
     add("--joints", type=int, nargs="+", choices=DAMS, help="of the dams (2 12)")
-    add("--refine", type=int, default=1, help="of the dam that cracks (1)")
-    add("--threads", type=int, default=2, help="of the program (2)")
+    add("--refine", type=count, default=1, help="of the dam that cracks (1)")
+    add("--threads", type=count, default=2, help="of the program (2)")
     add("--program", type=Path, default=ROOT / "build/release/keyway", help="the program")
     petsc = ROOT / "build/petsc/keyway"
     add("--petsc-program", type=Path, default=petsc, help="the program of several processes")
     add("--decks", type=Path, nargs="+", help="of estimates and forecast (all of input/)")
     add("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
-    add("--limit", type=float, default=200.0, help="of a run of peers (200) [s]")
-    add("--memory", type=float, help="that a run of scale may take (what is free) [MB]")
+    add("--limit", type=above_zero, default=200.0, help="of a run of peers (200) [s]")
+    add("--memory", type=above_zero, help="that a run of scale may take (what is free) [MB]")
     add("--keep", type=Path, metavar="FILE", help="of the sizes of scale that are measured")
     add("--opensees-python", metavar="PYTHON", help="a Python that has openseespy")
     add("--picture", type=Path, metavar="FILE", help="draw time against accuracy")

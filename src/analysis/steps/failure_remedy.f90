@@ -1,5 +1,6 @@
 !> Which criterion an increment without equilibrium does not meet, and what a user can do.
 module failure_remedy
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: rk
   use equilibrium, only: balance_outcome, unmet_criterion, of_increment, of_jumps, of_solves
   use step_plan, only: step, step_controls
@@ -34,7 +35,9 @@ contains
       text = 'the solver leaves '//short(unmet%value)//' of the forces (tolerance '// &
              short(unmet%tolerance)//', 0.3 times *CONTROLS, RESIDUAL)'
     case default
-      text = 'residual '//short(unmet%value)//' (tolerance '//short(unmet%tolerance)// &
+      text = 'residual '//short(unmet%value)
+      if (ieee_is_nan(unmet%value)) text = 'the iteration diverges: residual not a number'
+      text = text//' (tolerance '//short(unmet%tolerance)// &
              ', *CONTROLS, RESIDUAL)'
     end select
   end function name_criterion

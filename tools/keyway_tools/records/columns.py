@@ -43,7 +43,7 @@ def read_columns(path: Path, lines: list[str], unit: str | None, dt: float | Non
     table = np.array(rows)
     if table.shape[1] == 1:
         if dt is None:
-            raise RecordError(f"{path}: one column without times; give the time between them (dt)")
+            raise RecordError(f"{path}: one column without times; give the time step with --dt")
         step, values, layout = dt, table, ONE_COLUMN
     else:
         step = _time_step(path, _unit_of_time(path, heading) * table[:, 0])

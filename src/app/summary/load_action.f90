@@ -1,11 +1,14 @@
-!> What a load does in a step, for the summary of a model: its factor, and the peak of a motion.
+!> What a load does in a step, for the summary of a model: its factor, the sum of point forces, and
+!> the peak of a motion.
 module load_action
   use amplitudes, only: one_g
   use check_motions, only: find_peak
   use kinds, only: rk
   use load_base_motion, only: base_motion
+  use load_point, only: point_load
   use problem_definition, only: problem
   use step_plan, only: span_of_step, step_load
+  use summary_rows, only: unit
   use write_text, only: as_text
   implicit none
   private
@@ -13,14 +16,33 @@ module load_action
 
 contains
 
-  !> 'factor 0 to 9.81', 'factor 2 times amplitude RAMP', with the peak of a base motion.
+  !> 'factor 0 to 9.81', 'factor 2 times amplitude RAMP', with the sum of point forces, or the peak
+  !> of a base motion.
   pure function action_of_load(model, number, work) result(text)
     type(problem), intent(in) :: model
     integer, intent(in) :: number !< of the step
     type(step_load), intent(in) :: work
     character(:), allocatable :: text
-    text = factor_of(model, number, work)//peak_of_motion(model, number, work)
+    text = factor_of(model, number, work)//sum_of_forces(model, work)// &
+           peak_of_motion(model, number, work)
   end function action_of_load
+
+  !> ', sum of the forces 0 0 -4e6 N, loaded nodes: 4' of point forces, '' of other loads.
+  pure function sum_of_forces(model, work) result(text)
+    type(problem), intent(in) :: model
+    type(step_load), intent(in) :: work
+    character(:), allocatable :: text
+    integer :: i
+    text = ''
+    select type (forces => model%loads(work%load)%item)
+    type is (point_load)
+      text = ', sum of the forces'
+      do i = 1, size(forces%force, 1)
+        text = text//' '//as_text(sum(forces%force(i, :)))
+      end do
+      text = text//unit(model, ' N')//', loaded nodes: '//as_text(size(forces%nodes))
+    end select
+  end function sum_of_forces
 
   !> The factor: that of an amplitude, a ramp, or one that changes at once where there is inertia.
   pure function factor_of(model, number, work) result(text)

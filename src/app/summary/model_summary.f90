@@ -3,19 +3,17 @@ module model_summary
   use dam_mesh, only: fe_mesh, named_set
   use joint_points, only: dam_joint
   use kinds, only: rk
-  use load_action, only: action_of_load
   use material_law, only: material
   use problem_definition, only: problem
-  use step_plan, only: step, step_controls, step_damping, step_load
+  use step_summary, only: summary_of_steps
+  use summary_rows, only: clock_name, name_of_base, row, unit
   use text_buffers, only: text_buffer
   use write_text, only: as_text
-  use print_kinds, only: kinds_of_prints
   implicit none
   private
   public :: summary_of, summary_of_joints, summary_of_tests
 
   character, parameter :: nl = new_line('a')
-  integer, parameter :: name_width = 24
 
 contains
 
@@ -32,7 +30,7 @@ contains
            titled('Joints', joints_of(model))//titled('Ties and interfaces', ties_of(model))// &
            titled('Faces of different meshes', covers_of(model))// &
            titled('Amplitudes', amplitudes_of(model))//titled('Loads', loads_of(model))// &
-           steps_of(model)//titled('Material tests', tests_of(model))
+           summary_of_steps(model)//titled('Material tests', tests_of(model))
   end function summary_of
 
   !> A row where the deck is not in SI, whose units stand in the rows below.
@@ -43,15 +41,6 @@ contains
     if (text /= '') text = nl//row('units', 'not SI (a '//text//'): the numbers below are '// &
                                    'in the units of your deck')
   end function units_of
-
-  !> A unit of SI, '' where the deck is in other units.
-  pure function unit(model, name)
-    type(problem), intent(in) :: model
-    character(*), intent(in) :: name !< with a blank before
-    character(:), allocatable :: unit
-    unit = name
-    if (model%sign_of_units /= '') unit = ''
-  end function unit
 
   !> A title and the rows below it; nothing where there are no rows.
   pure function titled(title, rows) result(text)
@@ -77,13 +66,6 @@ contains
     text = ''
     if (size(model%joints) > 0) text = 'Joints'//joints_of(model)
   end function summary_of_joints
-
-  !> '  name    value'.
-  pure function row(name, value) result(text)
-    character(*), intent(in) :: name, value
-    character(:), allocatable :: text
-    text = '  '//name//repeat(' ', max(1, name_width - len(name)))//value
-  end function row
 
   !> The number of nodes, and of those that no element has.
   pure function nodes_of(mesh) result(text)
@@ -265,8 +247,8 @@ contains
       associate (now => model%amplitudes(i))
         text = text//nl//row(now%name, as_text(size(now%time))//' points, '// &
                              as_text(now%time(1))//' to '//as_text(now%time(size(now%time)))// &
-                             ' s, values '//as_text(minval(now%value))//' to '// &
-                             as_text(maxval(now%value)))
+                             ' s of the '//clock_name(now%uses_total_time)//', values '// &
+                             as_text(minval(now%value))//' to '//as_text(maxval(now%value)))
       end associate
     end do
   end function amplitudes_of
@@ -281,113 +263,4 @@ contains
     end do
     text = lines%contents()
   end function loads_of
-
-  pure function steps_of(model) result(text)
-    type(problem), intent(in) :: model
-    character(:), allocatable :: text
-    type(text_buffer) :: lines
-    integer :: i, j
-    do i = 1, size(model%steps)
-      associate (now => model%steps(i))
-        call lines%add(nl//'Step '//as_text(i)//' '//now%name//nl//procedure_of(now)//nl// &
-                       row('supports', as_text(size(now%fixities))//' degrees of freedom'))
-        do j = 1, size(now%loads)
-          call lines%add(nl//work_of(model, i, now%loads(j)))
-        end do
-        call lines%add(requests_of(now))
-      end associate
-    end do
-    text = lines%contents()
-  end function steps_of
-
-  !> A load that is active in a step.
-  pure function work_of(model, number, work) result(text)
-    type(problem), intent(in) :: model
-    integer, intent(in) :: number !< of the step
-    type(step_load), intent(in) :: work
-    character(:), allocatable :: text
-    text = row('load '//as_text(work%load), model%loads(work%load)%item%name//': '// &
-               action_of_load(model, number, work))
-  end function work_of
-
-  pure function procedure_of(now) result(text)
-    type(step), intent(in) :: now
-    character(:), allocatable :: text
-    text = trim(now%procedure%name)
-    if (now%procedure%finds_modes) then
-      text = row(text, as_text(now%num_modes)//' modes')
-      return
-    end if
-    text = row(text, 'duration '//as_text(now%duration)//' s, increment '// &
-               as_text(now%first_increment)//' s ('//as_text(now%smallest_increment)//' to '// &
-               as_text(now%largest_increment)//')')
-    if (now%is_direct) text = text//', fixed'
-    if (now%procedure%has_inertia) text = text//', SCHEME '//trim(now%procedure%scheme)
-    if (now%procedure%uses_alpha) text = text//', ALPHA '//as_text(now%alpha)
-    text = text//nl//row('controls', controls_of(now%controls))//damping_of(now%damping)
-  end function procedure_of
-
-  !> ACCURACY where it is asked for, all other controls always.
-  pure function controls_of(now) result(text)
-    type(step_controls), intent(in) :: now
-    character(:), allocatable :: text
-    text = 'RESIDUAL '//as_text(now%residual_tolerance)//', INCREMENT '// &
-           as_text(now%increment_tolerance)//', ITERATIONS '//as_text(now%max_iterations)// &
-           ', JOINT SOLVER '//trim(now%joint_solver)//', JOINT FORCES '//trim(now%joint_forces)// &
-           ', TANGENT '//trim(now%tangent)//', PRECISION '//trim(now%precision)// &
-           ', ERROR ESTIMATE '//trim(merge('ON ', 'OFF', now%estimates_errors))
-    if (now%accuracy > 0.0_rk) text = text//', ACCURACY '//as_text(now%accuracy)
-  end function controls_of
-
-  pure function damping_of(now) result(text)
-    type(step_damping), intent(in) :: now
-    character(:), allocatable :: text
-    text = ''
-    if (now%ratio > 0.0_rk) then
-      text = nl//row('damping', 'RATIO '//as_text(now%ratio)//' at '//as_text(now%f1)//' and '// &
-                     as_text(now%f2)//' Hz, BASE '//name_of_base(now%is_current))
-    end if
-    if (.not. now%modal_ratio > 0.0_rk) return
-    text = text//nl//row('modal damping', 'RATIO '//as_text(now%modal_ratio)//', ')
-    if (now%num_modes > 0) then
-      text = text//'MODES '//as_text(now%num_modes)
-    else
-      text = text//'HIGHEST '//as_text(now%highest)//' Hz'
-    end if
-  end function damping_of
-
-  !> The stiffness that BETA multiplies.
-  pure function name_of_base(is_current) result(text)
-    logical, intent(in) :: is_current
-    character(:), allocatable :: text
-    text = trim(merge('CURRENT', 'INITIAL', is_current))
-  end function name_of_base
-
-  pure function requests_of(now) result(text)
-    type(step), intent(in) :: now
-    character(:), allocatable :: text
-    integer :: i
-    text = ''
-    do i = 1, size(now%prints)
-      text = text//nl//row('print', trim(kinds_of_prints(now%prints(i)%kind)%subject)//' '// &
-                           now%prints(i)%name//':'//words(now%prints(i)%fields)//' every '// &
-                           as_text(now%prints(i)%frequency))
-    end do
-    do i = 1, size(now%outputs)
-      text = text//nl//row('fields', trim(adjustl(words(now%outputs(i)%fields)))//' every '// &
-                           as_text(now%outputs(i)%frequency))
-    end do
-    if (size(now%envelope) > 0) text = text//nl//row('envelope', trim(adjustl(words(now%envelope))))
-  end function requests_of
-
-  !> Words with blanks between.
-  pure function words(list) result(text)
-    character(*), intent(in) :: list(:)
-    character(:), allocatable :: text
-    integer :: i
-    text = ''
-    do i = 1, size(list)
-      text = text//' '//trim(list(i))
-    end do
-  end function words
 end module model_summary
