@@ -90,7 +90,9 @@ def test_check_lists_what_each_step_inherits(program_path: Path, tmp_path: Path)
     def loads(name: str) -> list[str]:
         return sorted(x.split(" ", 2)[2] for x in steps[name] if x.startswith("load "))
 
-    first, last = (f", sum of the forces {force} N, loaded nodes: 1" for force in ("5 0 0", "0 1 0"))
+    first, last = (
+        f", sum of the forces {force} N, loaded nodes: 1" for force in ("5 0 0", "0 1 0")
+    )
     assert loads("STEP-1") == [
         "gravity BLOCK: factor 0 to 9.81",
         f"point forces: factor 0 to 1{first}",
