@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -80,3 +81,19 @@ def test_modes_of_a_reduced_model(program_path, tmp_path, option, expected) -> N
     deck = tmp_path / "deck.inp"
     deck.write_text(text.replace("REDUCED, ACCURACY=0.02", f"REDUCED, {option}"), encoding="utf-8")
     assert f"\n  reduced model           {expected}\n" in summary(program_path, deck)
+
+
+def forecast(program: Path, folder: Path, old: str, new: str) -> float:
+    """Forecast time of the matching dam with a change [s]."""
+    text = (INPUT / "xingbiling_matching/xingbiling_matching.inp").read_text(encoding="utf-8")
+    assert old in text
+    text = text.replace("INPUT=", f"INPUT={INPUT / 'xingbiling_matching'}/").replace(old, new)
+    (folder / "deck.inp").write_text(text, encoding="utf-8")
+    return float(re.search(r"\n  time +about (\S+) s", summary(program, folder / "deck.inp"))[1])
+
+
+def test_forecast_counts_factored_tangents(program_path, tmp_path) -> None:
+    """Each increment of JOINT SOLVER=FULL has some four factors of unsymmetric matrices."""
+    usual = forecast(program_path, tmp_path, "*DYNAMIC", "*DYNAMIC")
+    full = forecast(program_path, tmp_path, "*DYNAMIC", "*CONTROLS, JOINT SOLVER=FULL\n*DYNAMIC")
+    assert full > 3.0 * usual

@@ -2,8 +2,9 @@
 !> the factor and the speed of this machine.
 !>
 !> The coefficients are those of runs on two processors of the machine whose speeds are `reference`.
-!> Joints and cracks take the iterations of strong motions. Dense matrices of joints grow with
-!> their points squared, or with their points where joints are separators in the factor.
+!> Joints and cracks take the iterations of strong motions; in short increments cracks take fewer.
+!> Dense matrices of joints grow with their points squared, or with their points where joints are
+!> separators in the factor.
 module run_forecast
   use errors, only: error_type
   use kinds, only: rk
@@ -50,6 +51,15 @@ module run_forecast
   real(rk), parameter :: point_time = 1.5e-5_rk, pair_time = 1.2e-8_rk !< of joints
   real(rk), parameter :: law_time = 6.5e-8_rk
   real(rk), parameter :: law_iterations = 10.0_rk, static_iterations = 15.0_rk
+  real(rk), parameter :: long_increment = 0.01_rk !< with all of law_iterations [s]
+  real(rk), parameter :: fewest_iterations = 2.0_rk
+  !> JOINT SOLVER=FULL and TANGENT=CONSISTENT: factors of an increment, and their time over that of
+  !> a symmetric matrix. They were counted in dams of 3879 and 7029 unknowns at 0.5 g.
+  real(rk), parameter :: joint_factors = 4.0_rk, consistent_factors = 6.0_rk
+  real(rk), parameter :: unsymmetric_time = 2.0_rk
+  !> *DYNAMIC, REDUCED: solves and factors for the shapes, and runs over the step.
+  real(rk), parameter :: shape_solves = 150.0_rk, shape_factors = 4.0_rk, num_trials = 3.0_rk
+  real(rk), parameter :: expand_time = 1.2e-6_rk !< per unknown, of displacements for envelopes
   real(rk), parameter :: iteration_time = 6.0e-8_rk !< of inelastic solids, per unknown
   real(rk), parameter :: mode_solves = 10.0_rk !< for each mode
   real(rk), parameter :: set_up_solves = 15.0_rk !< of a step with joints
@@ -189,31 +199,66 @@ contains
   real(rk) function time_of_step(plan, counts) result(time)
     type(step), intent(in) :: plan
     type(run_counts), intent(in) :: counts
-    real(rk) :: solve, increment, iterations, laws, share, spread
+    real(rk) :: solve, factor, joints, increment, iterations, share, spread
     ! Two threads did the work of the reference.
     spread = 2.0_rk/omp_get_max_threads()
     share = serial_share + (1.0_rk - serial_share)*spread
     solve = counts%entries*(solve_time + (far_solve_time - solve_time) &
                             *min(1.0_rk, counts%entries/far_entries))
-    time = step_time + spread*factor_time*counts%entries**1.5_rk
+    factor = spread*factor_time*counts%entries**1.5_rk
+    time = step_time + factor
     if (plan%procedure%finds_modes) then
       time = time + share*mode_solves*plan%num_modes*solve
       return
     end if
+    joints = counts%points*(point_time + pair_time*min(counts%points, most_at_the_end(plan)))
     if (counts%points > 0.0_rk) time = time + share*set_up_solves*solve
-    iterations = 0.0_rk
-    if (counts%law_points > 0.0_rk) then
-      iterations = law_iterations
-      if (plan%procedure%is_static()) iterations = static_iterations
+    if (plan%procedure%scheme == 'REDUCED') then
+      time = time + shape_factors*factor + share*shape_solves*solve &
+             + num_planned(plan)*(output_time + num_trials*joints)
+      if (has_envelope(plan)) time = time + num_planned(plan)*expand_time*counts%unknowns
+      return
     end if
-    laws = iterations*spread*law_time*counts%law_points
-    increment = solve + products_time*counts%unknowns &
-                + counts%points &
-                *(point_time + pair_time*min(counts%points, most_at_the_end(plan))) &
+    iterations = iterations_of(plan, counts)
+    increment = solve + products_time*counts%unknowns + joints &
                 + iterations*(solve + iteration_time*counts%unknowns)
-    if (allocated(plan%envelope)) increment = increment + envelope_time*counts%unknowns
-    time = time + num_planned(plan)*(output_time + share*increment + laws)
+    if (has_envelope(plan)) increment = increment + envelope_time*counts%unknowns
+    time = time + num_planned(plan)*(output_time + share*increment &
+                                     + iterations*spread*law_time*counts%law_points &
+                                     + factors_of(plan, counts)*unsymmetric_time*factor)
   end function time_of_step
+
+  !> Whether a step has *ENVELOPE of fields that need displacements.
+  pure logical function has_envelope(plan)
+    type(step), intent(in) :: plan
+    has_envelope = .false.
+    if (allocated(plan%envelope)) has_envelope = any(plan%envelope /= 'OPENING')
+  end function has_envelope
+
+  !> Iterations of an increment on cracks.
+  pure real(rk) function iterations_of(plan, counts) result(iterations)
+    type(step), intent(in) :: plan
+    type(run_counts), intent(in) :: counts
+    iterations = 0.0_rk
+    if (.not. counts%law_points > 0.0_rk) return
+    iterations = static_iterations
+    if (plan%procedure%is_static()) return
+    iterations = law_iterations*min(1.0_rk, plan%first_increment/long_increment)
+    iterations = max(fewest_iterations, iterations)
+  end function iterations_of
+
+  !> Factors of an increment, where its tangents are factored.
+  pure real(rk) function factors_of(plan, counts) result(factors)
+    type(step), intent(in) :: plan
+    type(run_counts), intent(in) :: counts
+    factors = 0.0_rk
+    if (counts%law_points > 0.0_rk .and. plan%controls%tangent == 'CONSISTENT') then
+      factors = consistent_factors
+    end if
+    if (counts%points > 0.0_rk .and. plan%controls%joint_solver == 'FULL') then
+      factors = max(factors, joint_factors, iterations_of(plan, counts))
+    end if
+  end function factors_of
 
   !> Memory [MB]. A dynamic step has mass, damping and the matrix of the increment as well.
   pure real(rk) function memory_of(steps, counts) result(memory)
