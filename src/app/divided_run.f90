@@ -1,8 +1,11 @@
 !> A run of several ranks. Rank 0 runs the analysis as the plain program does; the other ranks take
 !> the same path with results that write nothing.
 module divided_run
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use analysis_state, only: state, vibration_mode
   use cli, only: command_line
+  use diagnostic_text, only: text_of_warnings
+  use diagnostics, only: diagnostic_list, place, severity_warning
   use element_parts, only: divide_elements
   use errors, only: deck_is_wrong, error_type, keep_first, raise
   use file_system, only: base_name
@@ -47,17 +50,46 @@ contains
 
   !> Gives each rank its elements, for a run; refuses what several ranks cannot do. One rank has the
   !> solvers of several where --solver asks for one.
-  subroutine divide_problem(options, model, error)
+  subroutine divide_problem(options, model, remarks, error)
     type(command_line), intent(in) :: options
     type(problem), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: remarks !< warnings of the deck
     type(error_type), allocatable, intent(out) :: error
     if (num_ranks() == 1 .and. options%solver == choose_solver) return
     model%equation_solver = options%solver
     if (options%is_material) return
     call refuse_undivided(model, error)
+    if (.not. allocated(error)) call take_double_precision(options, model, remarks)
     if (.not. allocated(error) .and. .not. options%is_check) call divide_elements(model%mesh, error)
     call share_error(error)
   end subroutine divide_problem
+
+  !> Steps with PRECISION=SINGLE or MIXED have factors in double precision, with a warning.
+  subroutine take_double_precision(options, model, remarks)
+    type(command_line), intent(in) :: options
+    type(problem), intent(inout) :: model
+    type(diagnostic_list), intent(inout) :: remarks
+    type(diagnostic_list) :: found
+    type(place) :: spot
+    integer :: i
+    do i = 1, size(model%steps)
+      associate (plan => model%steps(i))
+        if (plan%controls%precision == 'DOUBLE' .or. plan%procedure%finds_modes) cycle
+        spot%file = model%deck_file
+        spot%line = plan%line
+        spot%keyword = trim(plan%procedure%name)
+        call found%add(severity_warning, spot, 'PRECISION='//trim(plan%controls%precision)// &
+                       ' of *CONTROLS has no effect: the solvers of several processes work '// &
+                       'in double precision', 'PRECISION=DOUBLE, or a run without mpiexec and '// &
+                       '--solver')
+        call remarks%add(severity_warning, spot, found%warnings(found%num_warnings)%problem, &
+                         found%warnings(found%num_warnings)%expected)
+        plan%controls%precision = 'DOUBLE'
+      end associate
+    end do
+    if (found%num_warnings == 0 .or. options%is_quiet) return
+    write (error_unit, '(a)') text_of_warnings(found, is_named=.true.)
+  end subroutine take_double_precision
 
   !> The part of the ranks that write nothing in a run; the calls of `share_error` meet those of
   !> run_analysis.

@@ -83,7 +83,7 @@ program keyway
     if (is_first_rank()) call mark_earlier_results(options, model, lock, error)
   end if
   call share_error(error)
-  if (.not. allocated(error)) call divide_problem(options, model, error)
+  if (.not. allocated(error)) call divide_problem(options, model, remarks, error)
   call end_on(error)
   if (options%is_check) then
     if (is_first_rank()) call report_model(options, model, echo, costs, error)

@@ -14,7 +14,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from block_decks import Pair
 from full_disks import DISKS, build_library, settings_of
 from harness import ROOT
 from rank_decks import LAUNCH, MOTION, QUAKE, WEIGHT, BlockOnRock
@@ -50,17 +49,25 @@ def test_free_body(keyway, on_ranks, solver):
 
 
 @pytest.mark.parametrize("option", [(), ("--check",)], ids=["run", "check"])
-def test_single_precision_is_for_one_process(on_ranks, option):
-    """Refused with the place of the procedure and the way out, never run wrongly; the same program
-    runs the deck in one process.
+@pytest.mark.parametrize("precision", ["SINGLE", "MIXED"])
+def test_single_precision_is_for_one_process(keyway, on_ranks, option, precision):
+    """Two processes warn, once and in job.json, and solve as if PRECISION were DOUBLE. The bound is
+    that of `test_ranks`.
     """
-    deck = Pair().deck("*STEP\n*STATIC\n*CONTROLS, PRECISION=SINGLE\n*END STEP\n")
-    line = deck.splitlines().index("*STATIC") + 1
-    run = on_ranks(2)(deck, *option, code=2)
-    assert "PRECISION=SINGLE" in run.stderr
-    assert f"job.inp:{line}: " in run.stderr
-    assert "without mpiexec" in run.stderr
-    assert on_ranks(0)(deck).json["status"] == "finished"
+    deck = BlockOnRock().deck(QUAKE + MOTION)
+    controls = f"*CONTROLS, PRECISION={precision}\n*DAMPING"
+    deck = deck.replace("*DAMPING", controls)
+    line = deck.splitlines().index("*DYNAMIC, DIRECT") + 1
+    run = on_ranks(2)(deck, *option)
+    warning = f"job.inp:{line}: *DYNAMIC: warning: PRECISION={precision} of *CONTROLS has no effect"
+    assert run.stderr.count(warning) == 1
+    if option:
+        return
+    assert any("PRECISION" in str(remark) for remark in run.json["warnings"])
+    plain = keyway(deck.replace(controls, "*DAMPING"), "-j", "1")
+    for name in ("U1", "U3", "A1"):
+        found, expected = (r.csv("node_TOP")[name] for r in (run, plain))
+        assert found == pytest.approx(expected, rel=0, abs=1e-8 * abs(expected).max())
 
 
 @pytest.mark.parametrize("ranks", [2, 4])

@@ -4,8 +4,6 @@ module undivided_effects
   use guest_type, only: damping_matrix, guest, mass_matrix, stiffness_matrix
   use problem_definition, only: problem
   use row_tables, only: row_table
-  use step_plan, only: step
-  use write_text, only: as_text
   implicit none
   private
   public :: refuse_undivided
@@ -18,18 +16,11 @@ contains
   subroutine refuse_undivided(model, error)
     type(problem), intent(in) :: model
     type(error_type), allocatable, intent(out) :: error
-    character(:), allocatable :: effect, place
-    integer :: i
+    character(:), allocatable :: effect
     effect = effect_of_model(model)
-    place = model%deck_file
-    do i = 1, size(model%steps)
-      if (effect /= '') exit
-      effect = effect_of_step(model%steps(i))
-      place = model%deck_file//':'//as_text(model%steps(i)%line)
-    end do
     if (effect == '') return
-    call raise(error, place//': '//effect//' work in one process only; start this deck '// &
-               'without mpiexec and --solver (large_models.md)', deck_is_wrong)
+    call raise(error, model%deck_file//': '//effect//' work in one process only; start '// &
+               'this deck without mpiexec and --solver (large_models.md)', deck_is_wrong)
   end subroutine refuse_undivided
 
   !> What the model holds, '' for nothing.
@@ -58,14 +49,4 @@ contains
     call cells%finish()
     hides_cells = cells%num_rows() == 0
   end function hides_cells
-
-  !> What a step does, '' for nothing.
-  function effect_of_step(plan) result(effect)
-    type(step), intent(in) :: plan
-    character(:), allocatable :: effect
-    effect = ''
-    if (plan%controls%precision /= 'DOUBLE') then
-      effect = 'factors in single precision (PRECISION='//trim(plan%controls%precision)//')'
-    end if
-  end function effect_of_step
 end module undivided_effects
