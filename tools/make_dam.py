@@ -330,6 +330,8 @@ def main(arguments: list[str] | None = None) -> int:
             mesh_options, note = sized_dam(mesh_options, chosen.unknowns, build, chosen.refine)
         mesh, blocks = build(mesh_options), block_options_of(chosen, mesh_options)
         if options.construction:
+            if mesh.interfaces:
+                raise ValueError("--lifts with a chain: expected --join auto or surfaces")
             name_lifts(mesh, mesh_options.num_height, options.construction.num_lifts)
             name_campaigns(mesh, options.construction)
         check_mesh(mesh, shape)

@@ -96,6 +96,7 @@ contains
     if (allocated(error)) then
       call explain_failed_write(error, results%stem, .true.)
       call results%log%note(error%message)
+      call results%summary%note_stop(model, now)
       call results%finish(model, now, 'stopped', error%message, failure)
       call close_stopped_log(model, now, costs, results)
     else

@@ -99,8 +99,8 @@ def test_the_limit_of_file_sizes_stops_the_run(program_path, long_deck, tmp_path
     long_deck.write_text(text.replace("0.01, 1000", "0.01, 8"))
     out, whole = tmp_path / "out", tmp_path / "whole"
 
-    def limit() -> None:  # above a checkpoint (108 kB), below the fields of the whole run
-        resource.setrlimit(resource.RLIMIT_FSIZE, (130_000, resource.RLIM_INFINITY))
+    def limit() -> None:  # above a checkpoint (134 kB), below the fields of the whole run (221 kB)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (160_000, resource.RLIM_INFINITY))
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
 
     done = subprocess.run(

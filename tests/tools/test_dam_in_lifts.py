@@ -12,6 +12,7 @@ from keyway_tools.study.mesh_sets import read_sets
 
 GROUTED = ["--lifts", "3", "--grouting", "1", "3"]
 WARM = [*GROUTED, "--temperatures", "1e-5", "16", "9"]
+CHAIN = ["--join", "chain", "--refine", "1", "--fine", "2", "--fine-refine", "2"]
 SMALL = ["--arc", "14", "--levels", "6", "--bottom", "2", "--thick", "2"]
 
 
@@ -63,6 +64,13 @@ def test_steps_with_temperatures(tmp_path):
     assert sets.node_sets["UP_TO_GROUT2"] == sets.node_sets["UP_TO_CREST"]
 
 
+def test_one_lift_has_no_stages(tmp_path, keyway):
+    make(tmp_path, "--lifts", "1", "--grouting", "1", "--no-rock")
+    files = {"dam_mesh.inp": (tmp_path / "dam_mesh.inp").read_text()}
+    run = keyway((tmp_path / "dam.inp").read_text(), "--check", files=files)
+    assert "STAGE" not in run.stderr
+
+
 def test_the_header_says_how_the_dam_is_built(tmp_path):
     make(tmp_path, "--lifts", "3", "--grouting", "3")
     head = (tmp_path / "dam.inp").read_text().replace("\n**  ", "")
@@ -84,6 +92,7 @@ def test_the_header_says_how_the_dam_is_built(tmp_path):
         ([*GROUTED, "--temperatures", "0", "16", "9"], "expansion: 0 1/K; expected > 0"),
         ([*WARM, "--seasons", "x.csv", "12", "m"], "expected a file and two numbers"),
         ([*WARM, "--seasons", "x.csv", "1", "2"], "expected 0 < increment <= duration"),
+        (["--lifts", "3", *CHAIN], "--lifts with a chain: expected --join auto or surfaces"),
     ],
 )
 def test_constructions_that_cannot_be(tmp_path, capsys, options, message):

@@ -134,6 +134,8 @@ contains
     call fill(timing%lost, n)
     call fill(timing%changes, n)
     call fill(timing%held, n)
+    call fill(timing%num_broken, n)
+    call fill(timing%num_lost, n)
   end subroutine fill_timing
 
   !> Error of the laws within increments.

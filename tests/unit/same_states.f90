@@ -157,6 +157,8 @@ contains
     call compare(log, what//'lost', a%lost, b%lost)
     call compare(log, what//'changes', a%changes, b%changes)
     call compare(log, what//'held', a%held, b%held)
+    call compare(log, what//'num_broken', a%num_broken, b%num_broken)
+    call compare(log, what//'num_lost', a%num_lost, b%num_lost)
   end subroutine compare_timing
 
   !> Error of the laws within increments.

@@ -181,7 +181,8 @@ def _static_steps(mesh: BrickMesh, options: DeckOptions) -> list[str]:
         weight = ["*DLOAD", "DAM, GRAV, 9.81, 0., 0., -1."]
         about = ["**", "** Weight of the dam and water"]
         return about + _static_step("WEIGHT", weight + _reservoir(options), mesh, options)
-    fields = ["*NODE FILE", "U, OPENING" if mesh.joint_names else "U", "*EL FILE", "SP, STAGE"]
+    fields = ["*NODE FILE", "U, OPENING" if mesh.joint_names else "U", "*EL FILE"]
+    fields += ["SP, STAGE" if building.num_lifts > 1 else "SP"]
     heat = options.heat
     cooling = heat.cooling_step if heat else None
     joints = [joints_there(mesh, lift) for lift in building.grouted_after]

@@ -24,7 +24,8 @@ module hht_integrator
   use solid_iteration, only: solid_solver
   use support_rates, only: find_slopes, has_moving_supports
   use state_transfer, only: store_motion
-  use opening_error, only: error_of_opening, mesh_error_of_opening, note_opening, rocks
+  use opening_error, only: count_broken, error_of_opening, mesh_error_of_opening, note_opening, &
+                           rocks
   use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
                         note_lost_forces, start_mesh_error, start_modal_error, take_modal_error
   use integrator_type, only: integrator
@@ -99,6 +100,7 @@ contains
     placed = now%motion%q
     call prescribed_values(self%system%supports, model%amplitudes, start, placed)
     call start_modal_error(self%modes, now%motion, placed, now%timing)
+    now%timing%num_broken = count_broken(now%joints)
   end subroutine follow_modes
 
   !> Prepares the estimate of the error of the mesh.
@@ -140,9 +142,8 @@ contains
       call find_slopes(model, self%system, when, slopes)
       call take_modal_error(self%modes, self%scheme%dt, now%motion, slopes, own, moved)
       call note_largest(self%system%numbers, self%modes, now%u, own)
-      results%time_error = [own%largest, own%at_largest, own%most/max(tiny(1.0_rk), own%motion)]
-      ! Histories of bodies that rock or slide do not follow the modes.
-      if (rocks(own) .or. now%energy%shows_sliding()) results%time_error(3) = -1.0_rk
+      results%time_error = [own%largest, abs(own%at_largest), &
+                            own%most/max(tiny(1.0_rk), own%motion)]
       results%mesh_error = -1.0_rk
       if (size(now%joints) == 0 .and. allocated(own%softer)) then
         results%mesh_error(of_displacement) = abs(own%mesh_at_largest)
@@ -151,6 +152,8 @@ contains
         call note_opening(now%joints, now%motion%jump_rate, self%scheme%dt, moved, own)
         results%opening_error = error_of_opening(own)
         results%mesh_error(of_opening) = mesh_error_of_opening(own)
+        ! Bodies that rock or slide do not follow the modes.
+        if (rocks(own) .or. now%energy%shows_sliding()) results%time_error(2:3) = -1.0_rk
       end if
     end associate
     call results%costs%stop()

@@ -30,7 +30,7 @@ module reduced_integrator
   use step_loads, only: external_force, step_time, support
   use step_plan, only: step
   use step_system, only: dam_system
-  use write_text, only: as_text
+  use write_text, only: as_short_text, as_text
   implicit none
   private
   public :: make_reduced
@@ -262,16 +262,15 @@ contains
     logical, intent(in) :: has_joints !< openings are measured, else displacements
     real(rk), intent(in) :: accuracy
     class(listener), intent(inout) :: results
-    character(160) :: text, error
-    write (text, '(a,i0,a,f0.1,a)') 'reduced model  modes ', reduction%num_modes, '  highest ', &
-      reduction%highest, ' Hz'
-    error = ''
+    character(:), allocatable :: text
+    text = 'reduced model  modes '//as_text(reduction%num_modes)//'  highest '// &
+           as_short_text(reduction%highest)//' Hz'
     if (reduction%estimate >= 0.0_rk) then
-      write (error, '(2(a,f0.2),a)') '  estimated error ', 100.0_rk*reduction%estimate, &
-        ' % of the largest '//trim(merge('opening     ', 'displacement', has_joints))// &
-        '  wanted ', 100.0_rk*accuracy, ' %'
+      text = text//'  estimated error '//as_short_text(100.0_rk*reduction%estimate)// &
+             ' % of the largest '//trim(merge('opening     ', 'displacement', has_joints))// &
+             '  wanted '//as_short_text(100.0_rk*accuracy)//' %'
     end if
-    call results%log%say(trim(text)//trim(error))
+    call results%log%say(text)
   end subroutine say_model
 
   !> Forces that the shapes start with: loads that may change, forces that are not balanced at the

@@ -3,13 +3,13 @@
 !> while joints are open is found from the run itself, by least squares.
 module opening_error
   use kinds, only: rk
-  use joint_law, only: joint_state
+  use joint_law, only: joint_state, state_open
   use joint_opening, only: opening_of
   use modal_errors, only: modal_error
   use small_matrix, only: solve_dense
   implicit none
   private
-  public :: note_opening, error_of_opening, mesh_error_of_opening, rocks
+  public :: count_broken, note_opening, error_of_opening, mesh_error_of_opening, rocks
 
   !> Added to the diagonal of the sums, over its mean: modes that hardly move explain nothing.
   real(rk), parameter :: share = 1.0e-3_rk
@@ -32,6 +32,16 @@ module opening_error
 
 contains
 
+  !> Points of joints that have lost their strength, or never had any.
+  pure integer function count_broken(joints) result(num_broken)
+    type(joint_state), intent(in) :: joints(:)
+    integer :: j
+    num_broken = 0
+    do j = 1, size(joints)
+      num_broken = num_broken + count(joints(j)%is_broken)
+    end do
+  end function count_broken
+
   !> Includes an increment in which the largest opening was open from its start to its end.
   subroutine note_opening(joints, jump_rate, dt, moved, own)
     type(joint_state), intent(in) :: joints(:) !< at the end
@@ -42,6 +52,7 @@ contains
     real(rk) :: opening, change, follows(size(moved))
     integer :: n
     n = size(moved)
+    own%num_lost = max(own%num_lost, count_broken(joints) - own%num_broken)
     if (.not. allocated(own%square)) then
       allocate (own%square(n, n), own%product(n), own%at_most(n), source=0.0_rk)
     end if
@@ -61,7 +72,7 @@ contains
         > abs(dot_product(follows, own%mesh_at_most))) own%mesh_at_most = own%softer - own%exact
   end subroutine note_opening
 
-  !> The largest opening and its rate.
+  !> The largest opening and its rate. Intact bonds do not open: their springs yield.
   pure subroutine find_largest(joints, jump_rate, opening, rate)
     type(joint_state), intent(in) :: joints(:)
     real(rk), intent(in) :: jump_rate(:, :) !< (3, points) in the increment [m/s]
@@ -75,7 +86,7 @@ contains
     do j = 1, size(joints)
       do p = 1, size(joints(j)%gap)
         own = opening_of(joints(j)%jump(1, p), joints(j)%gap(p))
-        if (own <= opening) cycle
+        if (own <= opening .or. joints(j)%status(p) /= state_open) cycle
         opening = own
         rate = jump_rate(1, before + p)
       end do
@@ -109,18 +120,18 @@ contains
                      /max(tiny(1.0_rk), own%changes)
   end function explained
 
-  !> Whether joints have lost so much of the forces of the modes that bodies rock, or openings do
-  !> not follow the modes: nor do their errors.
+  !> Whether joints have lost so much of the forces of the modes that bodies rock, bonds break, or
+  !> openings do not follow the modes: nor do their errors.
   logical function rocks(own)
     type(modal_error), intent(in) :: own
-    rocks = own%lost > most_lost*own%held
+    rocks = own%lost > most_lost*own%held .or. own%num_lost > 0
     if (own%changes > 0.0_rk .and. .not. rocks) then
       rocks = explained(own, trend(own)) < least_explained
     end if
   end function rocks
 
   !> The largest opening so far [m], the largest error of openings [m], and their quotient; errors
-  !> below 0 where bodies rock.
+  !> below 0 where bodies rock or bonds break.
   function error_of_opening(own) result(found)
     type(modal_error), intent(in) :: own
     real(rk), allocatable :: follows(:)
@@ -128,7 +139,7 @@ contains
     found = 0.0_rk
     if (.not. own%opening > 0.0_rk) return
     found = [own%opening, -1.0_rk, -1.0_rk]
-    if (own%lost > most_lost*own%held) return
+    if (own%lost > most_lost*own%held .or. own%num_lost > 0) return
     follows = trend(own)
     share_of_modes = 1.0_rk
     if (own%changes > 0.0_rk) share_of_modes = explained(own, follows)

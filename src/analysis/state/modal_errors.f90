@@ -32,6 +32,8 @@ module modal_errors
     !> joints have lost, over the circular frequencies; and of the displacements times these
     real(rk) :: lost = 0.0_rk, held = 0.0_rk
     real(rk), allocatable :: at_most(:) !< (modes) errors when that of the opening was largest
+    integer :: num_broken = 0 !< points of joints that have lost their strength, at the start
+    integer :: num_lost = 0 !< points that have lost it since then
   end type modal_error
 
 contains
@@ -62,6 +64,8 @@ contains
     call file%put('opening', timing%opening)
     call file%put('lost', timing%lost)
     call file%put('held', timing%held)
+    call file%put('num_broken', timing%num_broken)
+    call file%put('num_lost', timing%num_lost)
   end subroutine save_timing
 
   !> Reads the errors from the present group.
@@ -90,5 +94,7 @@ contains
     call file%get('opening', timing%opening)
     call file%get('lost', timing%lost)
     call file%get('held', timing%held)
+    call file%get('num_broken', timing%num_broken)
+    call file%get('num_lost', timing%num_lost)
   end subroutine load_timing
 end module modal_errors

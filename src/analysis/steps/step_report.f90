@@ -87,6 +87,7 @@ contains
         now%total_time
     end if
     remedy = advice_beyond_peak(model, outcome, now%step)// &
+             advice_on_blocks(model%steps(now%step), outcome)// &
              name_remedy(model%steps(now%step), now%control, outcome)
     call raise(error, trim(text)//worst_place(model, system, outcome)//remedy)
   end subroutine report_failure
@@ -105,7 +106,8 @@ contains
       if (allocated(outcome%failure)) then
         line = line//': '//outcome%failure
       else if (outcome%gives_up) then
-        line = line//': the penetration of a contact stays above *JOINT LAW, PENETRATION'
+        line = line//': the penetration of a contact stays above *JOINT LAW, PENETRATION '// &
+               '(a larger KN needs fewer augmentations)'
       else
         line = line//': '//what_is_unmet(plan, outcome)//worst_place(model, system, outcome)
       end if
@@ -161,6 +163,18 @@ contains
       text = text//'AUTO)'
     end if
   end function advice_beyond_peak
+
+  !> What ends the equilibrium of joints in a static step, however small its increments are.
+  pure function advice_on_blocks(plan, outcome) result(text)
+    type(step), intent(in) :: plan
+    type(balance_outcome), intent(in) :: outcome
+    character(:), allocatable :: text
+    text = ''
+    if (outcome%worst_point == 0 .or. outcome%gives_up) return
+    if (.not. plan%procedure%is_static()) return
+    text = ' (a block may have become free, or the load may exceed what joints and supports '// &
+           'can bear: no setting of *CONTROLS changes that)'
+  end function advice_on_blocks
 
   !> Failure of a material, or of uplift in a joint, in the smallest increment.
   pure function failure_text(outcome, now) result(text)

@@ -21,8 +21,13 @@ contains
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: num_free
     logical, intent(in) :: has_inertia
-    fits_the_end = count(operator%unknown <= num_free) &
-                   <= merge(most_in_motion, most_in_statics, has_inertia)
+    logical :: is_of_joint(num_free) ! points of a facet share its nodes
+    integer :: k
+    is_of_joint = .false.
+    do k = 1, size(operator%unknown)
+      if (operator%unknown(k) <= num_free) is_of_joint(operator%unknown(k)) = .true.
+    end do
+    fits_the_end = count(is_of_joint) <= merge(most_in_motion, most_in_statics, has_inertia)
   end function fits_the_end
 
   !> Group of each free unknown, 0 for none.

@@ -14,6 +14,7 @@
 !> In a static increment it ends as soon as Newton's iteration drives a block away without end, from
 !> the guess and from what the sweeps find.
 module joint_policy
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: rk
   use block_compliance, only: compliance_blocks
   use contact_scaling, only: contact_scale, open_group
@@ -109,6 +110,7 @@ contains
     process%num_sweeps = first_sweeps
     call try_sweeps(process, now)
     if (is_done(process, now) .or. now%outcome%is_loose) return
+    if (.not. ieee_is_finite(now%outcome%unbalance)) return ! the sweeps diverge
     call run_passes(process, now)
     if (is_done(process, now)) return
     process%num_sweeps = last_sweeps

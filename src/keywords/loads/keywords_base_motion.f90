@@ -50,6 +50,9 @@ contains
     if (history == 0) return
     call find_further_scale(this, trim(model%record_unit(history)), &
                             model%record_factor(history), faults, scale)
+    if (.not. abs(scale) > 0.0_rk) then
+      call this%warn(faults, 'the keyword has no effect: SCALE is zero', 'a factor other than 0')
+    end if
     shaking%kind = 'base motion'
     shaking%dof = this%integer('DOF')
     allocate (item, source=shaking)

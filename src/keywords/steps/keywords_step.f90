@@ -226,7 +226,8 @@ contains
                     'with joints, the same as SCHEME=REDUCED: modes, and the static response '// &
                     'of the rest'), &
               field('ACCURACY', kind_real, 'with REDUCED: error of the openings of joints '// &
-                    'that the modes may leave, over the largest opening', default='0.02', &
+                    'that the modes may leave, over the largest opening', &
+                    default='0.02 with REDUCED', &
                     lowest=0.0_rk, highest=0.5_rk, excludes_lowest=.true.), &
               field('MODES', kind_integer, 'with REDUCED: number of modes, in place of as many '// &
                     'as ACCURACY needs', lowest=1.0_rk)])
@@ -278,7 +279,7 @@ contains
     type(card), intent(in) :: this
     type(draft), intent(inout) :: model
     type(diagnostic_list), intent(inout) :: faults
-    model%now%reduced%accuracy = this%real('ACCURACY')
+    if (this%has('ACCURACY')) model%now%reduced%accuracy = this%real('ACCURACY')
     if (this%has('MODES')) model%now%reduced%num_modes = this%integer('MODES')
     if (model%now%procedure%scheme == reduced) return
     if (this%has('ACCURACY')) then

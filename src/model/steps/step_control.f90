@@ -18,7 +18,8 @@ module step_control
   !> Increments in a row without a cut, before a static step grows that was cut; twice as many after
   !> each growth that was cut at once, up to the most.
   integer, parameter :: steady_increments = 4, most_steady_increments = 64
-  integer, parameter :: most_cuts_in_a_row = 10
+  !> Cuts in a row; after so many an increment is as small as the round-off of the time.
+  integer, parameter :: most_cuts_in_a_row = 40
   !> Round-off of times, over the increment: a sum of n equal increments is off by up to n^2*1e-16.
   real(rk), parameter :: roundoff = 1.0e-6_rk
 

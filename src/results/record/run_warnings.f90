@@ -60,16 +60,19 @@ contains
     end associate
   end subroutine check_size
 
-  !> Warns when a reduced model does not meet the accuracy of its step.
+  !> Warns when a reduced model does not meet the accuracy of its step. More modes help where it has
+  !> as many as the deck names: a search has tried more, and a model with fewer has all there are.
   subroutine check_reduction(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
+    character(:), allocatable :: advice
     associate (plan => model%steps(now%step), estimate => now%reduction%estimate)
       if (now%reduction%num_modes == 0 .or. estimate <= plan%reduced%accuracy) return
+      advice = 'take *DYNAMIC without REDUCED'
+      if (now%reduction%num_modes == plan%reduced%num_modes) advice = advice//', or more MODES'
       call self%warn_once('step '//plan%name//': the reduced model does not reach the ACCURACY '// &
-                          'of the step: the estimate is '//as_text(estimate)//'; take *DYNAMIC '// &
-                          'without REDUCED, or more MODES')
+                          'of the step: the estimate is '//as_text(estimate)//'; '//advice)
     end associate
   end subroutine check_reduction
 

@@ -98,8 +98,8 @@ contains
     if (joint /= '') call json%put_text(joint, 'joint')
     if (found%total(value) >= 0.0_rk) call json%put_real(found%total(value), 'error')
     if (found%is_stray(value)) then
-      call json%put_text('time, mesh: bodies rock or slide, or openings do not follow the '// &
-                         'modes', 'not_known')
+      call json%put_text('time, mesh: bodies rock or slide, joints lose their strength, '// &
+                         'or openings do not follow the modes', 'not_known')
     end if
     if (found%has_time(value)) call json%put_real(found%time, 'time')
     if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')

@@ -43,8 +43,8 @@ contains
     text = ''
     parts = ''
     if (found%is_stray(value)) then
-      text = ', errors of increments and mesh not known: bodies rock or slide, or openings '// &
-             'do not follow the modes'
+      text = ', errors of increments and mesh not known: bodies rock or slide, joints lose '// &
+             'their strength, or openings do not follow the modes'
     end if
     if (found%has_time(value)) call add('time', found%time)
     if (found%has_mesh(value)) call add('mesh', found%mesh)

@@ -5,6 +5,7 @@ module run_progress
   use logging, only: run_log
   use problem_definition, only: problem
   use run_records, only: run_record
+  use step_control, only: roundoff
   use step_plan, only: step
   use timer, only: wall_clock
   use write_text, only: as_short_text, as_text
@@ -189,7 +190,7 @@ contains
     type(step), intent(in) :: plan
     num_increments = 1
     if (plan%procedure%finds_modes .or. plan%first_increment <= 0.0_rk) return
-    num_increments = max(1, nint(min(plan%duration/plan%first_increment, 1.0e9_rk)))
+    num_increments = max(1, ceiling(min(plan%duration/plan%first_increment, 1.0e9_rk) - roundoff))
   end function num_increments
 
   !> '37 %'.

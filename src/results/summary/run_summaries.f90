@@ -39,7 +39,7 @@ module run_summaries
     type(balance_of_ranks) :: balance !< at the end of a run of several ranks
   contains
     procedure :: begin_step
-    procedure :: note
+    procedure :: note, note_stop
     procedure :: note_modes
   end type run_summary
 
@@ -101,6 +101,21 @@ contains
       last%largest_error = max(last%largest_error, abs(now%energy%error))
     end associate
   end subroutine note
+
+  !> Records that the run stops in the present step, which may have no increment yet, and its
+  !> cut-backs.
+  subroutine note_stop(self, model, now)
+    class(run_summary), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now !< the last state in equilibrium
+    logical :: is_listed
+    if (now%step == 0) return
+    is_listed = size(self%steps) > 0
+    if (is_listed) is_listed = self%steps(size(self%steps))%step == now%step
+    if (.not. is_listed) call self%begin_step(model, now%step)
+    if (model%steps(now%step)%procedure%finds_modes .or. .not. now%has_opened_step) return
+    self%steps(size(self%steps))%cutbacks = now%control%cutbacks
+  end subroutine note_stop
 
   !> Whether the estimated error in time has chosen the increments of a step.
   elemental logical function follows_error(part)
