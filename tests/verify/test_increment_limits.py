@@ -76,6 +76,22 @@ def test_message_names_the_smallest_increment(keyway):
     assert "on the data line of *STATIC" in message
 
 
+def test_a_step_without_an_increment_is_in_the_summary(keyway):
+    """The second step stops in its first increment, after a cut-back that the summary counts. The
+    message says what no setting of the iteration changes.
+    """
+    run = keyway(
+        Block((1.0, 1.0, 1.0)).deck(static(weight()) + static(PULL, "0.5, 1, 0.1")), code=1
+    )
+    first, second = run.json["steps"]
+    assert (first["increments"], first["cutbacks"]) == (1, 0)
+    assert (second["increments"], second["time"]) == (0, 0.0)
+    text = (run.folder / "job.log").read_text(encoding="utf-8")
+    assert second["cutbacks"] == max(1, text.count("cut-back:"))
+    assert f", {second['cutbacks']} cut-backs" in text
+    assert "a block may have become free, or the load may exceed" in run.json["message"]
+
+
 def test_message_names_the_finer_slave(keyway):
     """A block of 9 nodes below on a base of one facet."""
     message = message_of(keyway, static(PULL), meshes=(1, 1), counts=(3, 3, 1))

@@ -46,11 +46,33 @@ contains
     end do
     call check_close(log, control%size, 0.01_rk, 1.0e-15_rk, 'and doubled again')
     call follow_an_error(log, plan)
+    call cut_to_the_smallest(log, plan)
     plan%is_direct = .true.
     call start_control(plan, .true., control)
     call control%cut(0.01_rk, 1.0_rk, gives_up)
     call check(log, gives_up, 'direct increments are not cut')
   end subroutine increments_grow_and_shrink
+
+  !> A smallest increment of the deck is met, however many cuts that takes: 0.01 s to 1e-8 s.
+  subroutine cut_to_the_smallest(log, plan)
+    type(test_log), intent(inout) :: log
+    type(step), intent(in) :: plan
+    type(step) :: named
+    type(increment_control) :: control
+    logical :: gives_up
+    integer :: num_cuts
+    named = plan
+    named%smallest_increment = 1.0e-8_rk
+    call start_control(named, .false., control)
+    call check_close(log, control%least_size(), 1.0e-8_rk, 1.0e-15_rk, 'the least size')
+    num_cuts = 0
+    gives_up = .false.
+    do while (.not. gives_up)
+      call control%cut(control%size, 1.0_rk, gives_up)
+      num_cuts = num_cuts + 1
+    end do
+    call check(log, num_cuts == 20, '0.01 s over 2**19 is above 1e-8 s')
+  end subroutine cut_to_the_smallest
 
   !> A size that was cut grows after four increments that converged slowly; after eight when the
   !> first one of the larger size was cut. A size that was never cut stays.
