@@ -328,7 +328,10 @@ contains
       least = next%when
       call least%set_end(now%step_time, now%control%least_size())
       gives_up = method%is_hopeless(model, plan, least, now)
-      if (gives_up) now%control%size = 0.0_rk ! below the smallest, which the message then names
+      if (gives_up) then
+        now%control%size = 0.0_rk ! below the smallest, which the message then names
+        now%control%cutbacks = now%control%cutbacks - 1
+      end if
     end if
     if (.not. gives_up) return
     call report_failure(model, method%system, next%outcome, now, error)

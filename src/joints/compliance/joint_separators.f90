@@ -21,9 +21,11 @@ contains
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: num_free
     logical, intent(in) :: has_inertia
-    logical :: is_of_joint(num_free) ! points of a facet share its nodes
+    logical, allocatable :: is_of_joint(:) ! points of a facet share its nodes
     integer :: k
-    is_of_joint = .false.
+    fits_the_end = .true.
+    if (size(operator%unknown) == 0) return
+    allocate (is_of_joint(num_free), source=.false.)
     do k = 1, size(operator%unknown)
       if (operator%unknown(k) <= num_free) is_of_joint(operator%unknown(k)) = .true.
     end do

@@ -171,7 +171,6 @@ contains
     real(rk), intent(in) :: ratio !< requested over present size; 1 without a request
     logical, intent(out) :: gives_up
     self%last_size = size
-    self%cutbacks = self%cutbacks + 1
     self%cuts_in_a_row = self%cuts_in_a_row + 1
     self%easy_so_far = 0
     self%steady_so_far = 0
@@ -181,5 +180,6 @@ contains
     if (self%first > 0.0_rk) self%size = self%on_grid(self%size)
     gives_up = self%is_direct .or. self%cuts_in_a_row > most_cuts_in_a_row &
                .or. self%size < self%smallest*(1.0_rk - roundoff)
+    if (.not. gives_up) self%cutbacks = self%cutbacks + 1
   end subroutine cut
 end module step_control
