@@ -77,8 +77,8 @@ def test_message_names_the_smallest_increment(keyway):
 
 
 def test_a_step_without_an_increment_is_in_the_summary(keyway):
-    """The second step stops in its first increment; the summary counts the cut-backs of the log. The
-    message says what no setting of the iteration changes.
+    """The second step stops in its first increment; the summary counts the cut-backs of the log.
+    The message says what no setting of the iteration changes.
     """
     run = keyway(
         Block((1.0, 1.0, 1.0)).deck(static(weight()) + static(PULL, "0.5, 1, 0.1")), code=1
