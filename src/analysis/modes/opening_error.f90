@@ -120,11 +120,17 @@ contains
                      /max(tiny(1.0_rk), own%changes)
   end function explained
 
+  !> Whether joints have lost so much of the forces of the modes that bodies rock, or bonds break.
+  pure logical function leaves_modes(own)
+    type(modal_error), intent(in) :: own
+    leaves_modes = own%lost > most_lost*own%held .or. own%num_lost > 0
+  end function leaves_modes
+
   !> Whether joints have lost so much of the forces of the modes that bodies rock, bonds break, or
   !> openings do not follow the modes: nor do their errors.
   logical function rocks(own)
     type(modal_error), intent(in) :: own
-    rocks = own%lost > most_lost*own%held .or. own%num_lost > 0
+    rocks = leaves_modes(own)
     if (own%changes > 0.0_rk .and. .not. rocks) then
       rocks = explained(own, trend(own)) < least_explained
     end if
@@ -139,7 +145,7 @@ contains
     found = 0.0_rk
     if (.not. own%opening > 0.0_rk) return
     found = [own%opening, -1.0_rk, -1.0_rk]
-    if (own%lost > most_lost*own%held .or. own%num_lost > 0) return
+    if (leaves_modes(own)) return
     follows = trend(own)
     share_of_modes = 1.0_rk
     if (own%changes > 0.0_rk) share_of_modes = explained(own, follows)

@@ -11,7 +11,7 @@ module goal_errors
   use recovery_plans, only: recovery_plan
   implicit none
   private
-  public :: goal_error, note_motion_errors, note_duals, find_stiffening
+  public :: cause_of_stray, goal_error, note_motion_errors, note_duals, find_stiffening
 
   type :: goal_error
     real(rk) :: at_time = 0.0_rk !< result whose error in time is known [m]
@@ -27,6 +27,9 @@ module goal_errors
     procedure, private :: is_of
   end type goal_error
 
+  !> Why a result does not follow the modes of its step, so that its errors are not known.
+  character(*), parameter :: cause_of_stray = 'bodies rock or slide, joints lose their '// &
+                             'strength, or openings do not follow the modes'
   !> Of a result: what springs of joints may contribute as an error.
   real(rk), parameter :: largest_share = 0.25_rk
   real(rk), parameter :: roundoff = 1.0e-9_rk !< of a result that is computed twice

@@ -2,7 +2,7 @@
 module error_json
   use kinds, only: rk
   use dual_solutions, only: of_displacement, of_opening
-  use goal_errors, only: goal_error
+  use goal_errors, only: cause_of_stray, goal_error
   use place_errors, only: bounded_by_law, left_elasticity, not_known
   use singular_places, only: is_singular, words_of_cause
   use json_writer, only: json_text
@@ -98,8 +98,7 @@ contains
     if (joint /= '') call json%put_text(joint, 'joint')
     if (found%total(value) >= 0.0_rk) call json%put_real(found%total(value), 'error')
     if (found%is_stray(value)) then
-      call json%put_text('time, mesh: bodies rock or slide, joints lose their strength, '// &
-                         'or openings do not follow the modes', 'not_known')
+      call json%put_text('time, mesh: '//cause_of_stray, 'not_known')
     end if
     if (found%has_time(value)) call json%put_real(found%time, 'time')
     if (found%has_mesh(value)) call json%put_real(found%mesh, 'mesh')

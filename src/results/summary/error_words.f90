@@ -2,7 +2,7 @@
 module error_words
   use dual_solutions, only: of_displacement, of_opening
   use envelopes, only: envelope
-  use goal_errors, only: goal_error
+  use goal_errors, only: cause_of_stray, goal_error
   use kinds, only: rk
   use place_errors, only: bounded_by_law, left_elasticity
   use problem_definition, only: problem
@@ -43,8 +43,7 @@ contains
     text = ''
     parts = ''
     if (found%is_stray(value)) then
-      text = ', errors of increments and mesh not known: bodies rock or slide, joints lose '// &
-             'their strength, or openings do not follow the modes'
+      text = ', errors of increments and mesh not known: '//cause_of_stray
     end if
     if (found%has_time(value)) call add('time', found%time)
     if (found%has_mesh(value)) call add('mesh', found%mesh)
