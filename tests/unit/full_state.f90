@@ -268,6 +268,7 @@ contains
     call fill(reduction%num_modes, n)
     call fill(reduction%highest, n)
     call fill(reduction%estimate, n)
+    call fill(reduction%num_broken, n)
   end subroutine fill_reduction
 
   !> The last matrix.

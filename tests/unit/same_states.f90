@@ -278,6 +278,7 @@ contains
     call compare(log, what//'num_modes', a%num_modes, b%num_modes)
     call compare(log, what//'highest', a%highest, b%highest)
     call compare(log, what//'estimate', a%estimate, b%estimate)
+    call compare(log, what//'num_broken', a%num_broken, b%num_broken)
   end subroutine compare_reduction
 
   !> The last matrix.

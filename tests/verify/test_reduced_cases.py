@@ -89,6 +89,18 @@ def test_cut_increments(keyway):
     assert openings(run, 2).max() == pytest.approx(expected, rel=ACCURACY)
 
 
+@pytest.mark.parametrize(("strength", "breaks"), [(2e5, True), (5e7, False)])
+def test_bonds_that_break(keyway, strength, breaks):
+    """A bond may break an increment earlier or later than in the full model: a warning says that
+    the estimate does not show this. Bonds that hold give none."""
+    options = dataclasses.replace(DAMPED, tensile_strength=strength)
+    _, deck, files = decks(dataclasses.replace(SHAKEN, duration=1.0, options=options))
+    run = keyway(deck, files=files)
+    said = [text for text in run.json["warnings"] if "bonds of joints break" in text]
+    assert len(said) == breaks
+    assert (openings(run, 2).max() > 1e-3) == breaks
+
+
 def test_modal_damping(keyway):
     """Modal damping beside a little Rayleigh damping."""
     little = "*DAMPING, RATIO=0.02, F1=2, F2=10"

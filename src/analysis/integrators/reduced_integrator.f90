@@ -14,6 +14,7 @@ module reduced_integrator
   use joint_forces, only: gather_tractions
   use kinds, only: rk
   use massless_solids, only: has_massless
+  use opening_error, only: count_broken
   use problem_definition, only: problem
   use reduced_basis, only: build_basis, reduced_model
   use reduced_energy, only: add_reduced_work
@@ -215,7 +216,8 @@ contains
         call results%costs%stop()
       end if
       now%reduction = reduction_status(wanted, self%basis%num_modes, &
-                                       sqrt(maxval(self%basis%lambda))/two_pi, estimate)
+                                       sqrt(maxval(self%basis%lambda))/two_pi, estimate, &
+                                       count_broken(now%joints))
       call say_model(now%reduction, size(model%joints) > 0, plan%reduced%accuracy, results)
       if (plan%reduced%num_modes > 0 .or. estimate <= plan%reduced%accuracy) exit
       if (wanted >= most_modes .or. self%basis%num_shapes < wanted) exit

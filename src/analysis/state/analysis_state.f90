@@ -47,6 +47,7 @@ module analysis_state
     integer :: num_modes = 0 !< 0: the step has no reduced model
     real(rk) :: highest = 0.0_rk !< frequency [Hz]
     real(rk) :: estimate = 0.0_rk !< error of the openings, over the largest; negative: not known
+    integer :: num_broken = 0 !< points of joints without strength at the start of the step
   end type reduction_status
 
   !> The error in time of a step whose increments follow it (theory.md, 7.5). Norms are weighted by

@@ -266,6 +266,7 @@ contains
     call file%put('num_modes', reduction%num_modes)
     call file%put('highest', reduction%highest)
     call file%put('estimate', reduction%estimate)
+    call file%put('num_broken', reduction%num_broken)
   end subroutine save_reduction
 
   !> Reads what is known of the reduced model.
@@ -276,6 +277,7 @@ contains
     call file%get('num_modes', reduction%num_modes)
     call file%get('highest', reduction%highest)
     call file%get('estimate', reduction%estimate)
+    call file%get('num_broken', reduction%num_broken)
   end subroutine load_reduction
 
   !> Writes the error in time.

@@ -89,7 +89,9 @@ contains
                   'A step with *DYNAMIC, REDUCED holds linear elastic solids with joints on '// &
                   'fixed supports. The deck has more: cracking concrete, equations, moving '// &
                   'supports, elements that are absent in the step, temperatures that change in '// &
-                  'it. Stages and temperatures in steps before it are possible.', &
+                  'it. Stages and temperatures in steps before it are possible. As a warning: '// &
+                  'the model is less accurate than ACCURACY, or its estimate may be wrong, '// &
+                  'because bonds of joints break.', &
                   'Leave REDUCED out. The full model takes everything.', &
                   '*DYNAMIC, REDUCED, DIRECT', &
                   '*DYNAMIC, DIRECT')

@@ -23,8 +23,8 @@ contains
                     'until no point in contact penetrates deeper than PENETRATION and no point '// &
                     'under pressure is open by more than PENETRATION.'//nl// &
                     'KN with PENETRATION: only controls the convergence; a larger KN '// &
-                    'takes fewer repetitions. The default is E/h of the softer side, h the '// &
-                    'depth of its elements, and E/THICKNESS with a tensile strength.'//nl// &
+                    'takes fewer repetitions. The default is 50 E/h of the softer side, h '// &
+                    'the depth of its elements, and E/THICKNESS with a tensile strength.'//nl// &
                     'KT with PENETRATION: the default is E/THICKNESS/(2(1+nu)).'
     allocate (entry%parameters, source=[ &
               field('KN', kind_real, 'normal stiffness', 'Pa/m', 'E/THICKNESS of the slave side', &

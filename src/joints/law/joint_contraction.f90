@@ -21,7 +21,11 @@ module joint_contraction
   use slip_dissipation, only: closing_work, opening_work, sliding_work
   implicit none
   private
-  public :: contraction_law
+  public :: contraction_law, penalty_factor
+
+  !> k_n of contact over E/h of the softest layer of elements, as the penalty of CalculiX is 50
+  !> times E over a unit length (different_meshes.md, 13.5 and 13.9).
+  real(rk), parameter :: penalty_factor = 50.0_rk
 
   type, extends(traction_law) :: contraction_law
     real(rk) :: normal_stiffness = 0.0_rk !< k_n [Pa/m]; 0: from the solid
@@ -86,12 +90,14 @@ contains
 
   !> k_n = E/thickness and k_t = k_n/(2 (1 + nu)) where the deck gave none (paper_notes.md, 3). For
   !> contact without penetration k_n only controls the convergence (different_meshes.md, 13.5): it
-  !> is the stiffness of a layer of elements, and k_t is still that of the joint.
+  !> is that of a penalty, and k_t is still that of the joint.
   pure subroutine complete(self, solid)
     class(contraction_law), intent(inout) :: self
     type(solid_behind), intent(in) :: solid
     if (self%penetration > 0.0_rk .and. self%normal_stiffness <= 0.0_rk &
-        .and. self%strength <= 0.0_rk) self%normal_stiffness = solid%layer_stiffness
+        .and. self%strength <= 0.0_rk) then
+      self%normal_stiffness = penalty_factor*solid%layer_stiffness
+    end if
     if (self%normal_stiffness <= 0.0_rk) then
       self%normal_stiffness = self%layer_factor*solid%layer_stiffness
     end if

@@ -2,7 +2,7 @@
 module keywords_contact_pair
   use deck_card, only: card
   use diagnostics, only: diagnostic_list
-  use joint_contraction, only: contraction_law
+  use joint_contraction, only: contraction_law, penalty_factor
   use keyword_spec, only: field, keyword, kind_choice, kind_flag, kind_real, kind_text, kind_word
   use keywords_other, only: add_idle_parameters, add_refused_parameter
   use kinds, only: rk
@@ -17,10 +17,6 @@ module keywords_contact_pair
   public :: read_contact_pair, read_clearance
 
   character, parameter :: nl = new_line('a')
-
-  !> KN of HARD contact over E/h of the softest layer of elements, as the penalty of CalculiX is 50
-  !> times E over a unit length (different_meshes.md, 13.9).
-  real(rk), parameter :: penalty_factor = 50.0_rk
 
   !> Tensile strength of tied contact: no traction of a model reaches it [Pa].
   real(rk), parameter :: tied_strength = 1.0e30_rk

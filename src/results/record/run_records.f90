@@ -14,6 +14,7 @@ module run_records
   use damage_readings, only: damage_record, open_damage_record, note_damage
   use law_fields, only: mean_of_elements, take_block
   use goal_errors, only: goal_error
+  use opening_error, only: count_broken
   use path_errors, only: path_error
   use extreme_errors, only: forget_error, update_error
   use singular_places, only: singular_nodes
