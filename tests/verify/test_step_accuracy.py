@@ -123,9 +123,15 @@ def test_limits_of_the_data_line(keyway):
     data = f"{FIRST!r}, {DURATION}\n"
     limited = deck.replace(data, f"{FIRST!r}, {DURATION}, {0.3 * FIRST!r}, {2.0 * FIRST!r}\n")
     assert limited != deck
-    assert min(sizes_of(keyway(limited))) == pytest.approx(0.5)
+    run = keyway(limited)
+    assert min(sizes_of(run)) == pytest.approx(0.5)
+    # The smallest increment keeps the accuracy from being met.
+    assert run.json["accuracy"]["increments"]["STEP-2"]["estimated_error"] > 0.005
+    assert any("ACCURACY is not met" in text for text in run.json["warnings"])
     still = limited.replace("ACCURACY=0.005", "ACCURACY=0.5")
-    assert max(sizes_of(keyway(still))) == pytest.approx(2.0)
+    run = keyway(still)
+    assert max(sizes_of(run)) == pytest.approx(2.0)
+    assert run.json["warnings"] == []
 
 
 def test_a_first_increment_longer_than_the_samples(keyway):

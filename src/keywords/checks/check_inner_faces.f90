@@ -116,7 +116,7 @@ contains
     integer :: s
     s = first_step(model, steps, list%load(i), list%element(i))
     is_inside = s > 0
-    if (is_inside) is_inside = is_there(model, list%behind(i), s)
+    if (is_inside) is_inside = model%problem%stages%has_element(list%behind(i), s)
   end function is_inside
 
   !> Lists the steps of each load whose factor is not zero.
@@ -154,21 +154,11 @@ contains
     i = steps%first(load)
     do while (i > 0)
       s = steps%step(i)
-      if (is_there(model, element, s)) return
+      if (model%problem%stages%has_element(element, s)) return
       i = steps%next(i)
     end do
     s = 0
   end function first_step
-
-  pure logical function is_there(model, element, s)
-    type(draft), intent(in) :: model
-    integer, intent(in) :: element !< position
-    integer, intent(in) :: s !< step
-    is_there = .true.
-    if (allocated(model%problem%stages%is_absent)) then
-      is_there = .not. model%problem%stages%is_absent(element, s)
-    end if
-  end function is_there
 
   subroutine warn(model, cards, list, i, num, s, faults)
     type(draft), intent(in) :: model

@@ -2,7 +2,8 @@
 !> level above the crest.
 module check_loads
   use amplitudes, only: amplitude
-  use deck_scan, only: is_keyword
+  use deck_card, only: card
+  use deck_scan, only: is_keyword, steps_of_cards
   use diagnostics, only: diagnostic_list
   use growing_lists, only: append, make_room
   use kinds, only: rk
@@ -253,27 +254,18 @@ contains
     if (record%uses_total_time) time = sum(model%problem%steps(:s)%duration)
   end function end_of_clock
 
-  !> Water above the highest node of its surface does not act; water at its very foot is a level in
-  !> another unit than that of the coordinates.
+  !> Water above the highest node of its surface does not act, nor above what is built of it; water
+  !> at its very foot is a level in another unit than that of the coordinates.
   subroutine warn_of_levels(model, faults)
     type(draft), intent(in) :: model
     type(diagnostic_list), intent(inout) :: faults
-    real(rk) :: crest, foot, level, bed
-    integer :: i, f, found, up
+    real(rk) :: crest, built, foot, level, bed
+    character(:), allocatable :: place
+    integer :: i, step(size(model%cards))
+    step = steps_of_cards(model%cards)
     do i = 1, size(model%cards)
       if (.not. is_keyword(model%cards(i), 'RESERVOIR')) cycle
-      found = find_surface_name(model, model%cards(i)%word('SURFACE'))
-      up = model%cards(i)%integer('UP')
-      crest = -huge(1.0_rk)
-      foot = huge(1.0_rk)
-      associate (mesh => model%problem%mesh, faces => model%problem%surfaces(found))
-        do f = 1, size(faces%element)
-          associate (heights => mesh%x(up, face_nodes(mesh, faces%element(f), faces%face(f))))
-            crest = max(crest, maxval(heights))
-            foot = min(foot, minval(heights))
-          end associate
-        end do
-      end associate
+      call measure_surface(model, model%cards(i), step(i), foot, crest, built)
       level = model%cards(i)%real('LEVEL')
       bed = model%cards(i)%real('BED')
       if (level - max(bed, foot) < least_wet*(crest - foot)) then
@@ -281,10 +273,35 @@ contains
                                  'the surface, which goes from '//as_text(foot)//' to '// &
                                  as_text(crest), 'a level in the unit of the coordinates')
       end if
-      if (level <= crest + round_off*(level - bed)) cycle
+      if (level <= built + round_off*(level - bed) .or. built < foot) cycle
+      place = 'the surface'
+      if (built < crest) place = 'the surface in this step'
       call model%cards(i)%warn(faults, 'the level, '//as_text(level)//', is above the top of '// &
-                               'the surface, '//as_text(crest)//': water above the top does '// &
-                               'not act')
+                               place//', '//as_text(built)//': water above the top does not act')
     end do
   end subroutine warn_of_levels
+
+  !> Lowest and highest node of the surface of a reservoir, and the highest of what is there of it.
+  subroutine measure_surface(model, this, s, foot, crest, built)
+    type(draft), intent(in) :: model
+    type(card), intent(in) :: this
+    integer, intent(in) :: s !< step
+    real(rk), intent(out) :: foot, crest, built !< `built` is below `foot` where nothing is there
+    integer :: f, up
+    up = this%integer('UP')
+    foot = huge(1.0_rk)
+    crest = -huge(1.0_rk)
+    built = -huge(1.0_rk)
+    associate (mesh => model%problem%mesh, &
+               faces => model%problem%surfaces(find_surface_name(model, this%word('SURFACE'))))
+      do f = 1, size(faces%element)
+        associate (heights => mesh%x(up, face_nodes(mesh, faces%element(f), faces%face(f))))
+          crest = max(crest, maxval(heights))
+          foot = min(foot, minval(heights))
+          if (.not. model%problem%stages%has_element(faces%element(f), s)) cycle
+          built = max(built, maxval(heights))
+        end associate
+      end do
+    end associate
+  end subroutine measure_surface
 end module check_loads

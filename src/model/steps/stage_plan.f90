@@ -11,6 +11,7 @@ module stage_plan
     logical, allocatable :: is_grouted(:) !< (joints) has a *GROUT in some step
   contains
     procedure :: is_there_any
+    procedure :: has_element
     procedure :: changes_elements
     procedure :: step_of_elements
   end type stages
@@ -22,6 +23,15 @@ contains
     class(stages), intent(in) :: self
     is_there_any = allocated(self%is_absent) .or. allocated(self%is_grouted)
   end function is_there_any
+
+  !> Whether an element is there in a step.
+  pure logical function has_element(self, element, step)
+    class(stages), intent(in) :: self
+    integer, intent(in) :: element !< position
+    integer, intent(in) :: step !< number of the step
+    has_element = .true.
+    if (allocated(self%is_absent)) has_element = .not. self%is_absent(element, step)
+  end function has_element
 
   !> Whether elements come or go at the start of a step.
   pure logical function changes_elements(self, step)

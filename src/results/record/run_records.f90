@@ -18,7 +18,7 @@ module run_records
   use path_errors, only: path_error
   use extreme_errors, only: forget_error, update_error
   use singular_places, only: singular_nodes
-  use write_text, only: as_text
+  use write_text, only: as_short_text, as_text
   use space_errors, only: space_error, note_space_error
   use stress_fields, only: recovered_fields
   use field_table, only: list_fields, find_field

@@ -12,6 +12,8 @@ submodule(run_records) run_warnings
   !> the energy.
   real(rk), parameter :: largest_dissipation = 0.3_rk
 
+  real(rk), parameter :: round_off = 1.0e-9_rk !< of the duration of a step
+
   !> Nearer to the limit of ALPHA, -1/3, more damping of the scheme is no advice.
   real(rk), parameter :: strong_alpha = -0.25_rk
 
@@ -31,6 +33,7 @@ contains
     call check_size(self, model, now)
     call check_reduction(self, model, now)
     call check_sliding(self, model, now)
+    call check_accuracy(self, model, now)
   end subroutine warn_of_increment
 
   !> Warns once in a step where equilibrium was found with the stiffness recovery fixed.
@@ -103,6 +106,22 @@ contains
                           'size')
     end associate
   end subroutine check_sliding
+
+  !> Warns at the end of a step whose estimated error in time is above its ACCURACY. Where joints hit
+  !> each other there is no such estimate.
+  subroutine check_accuracy(self, model, now)
+    class(run_record), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    associate (plan => model%steps(now%step), found => now%accuracy%relative())
+      if (.not. plan%follows_accuracy() .or. found <= plan%controls%accuracy) return
+      if (now%step_time < (1.0_rk - round_off)*plan%duration) return
+      if (size(model%joints) > 0 .and. now%energy%shows_impacts()) return
+      call self%warn_once('step '//plan%name//': *CONTROLS, ACCURACY is not met: the estimated '// &
+                          'error in time is '//as_short_text(100.0_rk*found)//' % of the largest '// &
+                          'displacement; name a smaller smallest increment')
+    end associate
+  end subroutine check_accuracy
 
   !> Warns when the recovery of stiffness of concrete drives the motion: no increment cures this.
   subroutine check_law(self, model, now)
