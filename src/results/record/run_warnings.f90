@@ -107,8 +107,8 @@ contains
     end associate
   end subroutine check_sliding
 
-  !> Warns at the end of a step whose estimated error in time is above its ACCURACY. Where joints hit
-  !> each other there is no such estimate.
+  !> Warns at the end of a step whose estimated error in time is above its ACCURACY. Where joints
+  !> hit each other there is no such estimate.
   subroutine check_accuracy(self, model, now)
     class(run_record), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -117,9 +117,9 @@ contains
       if (.not. plan%follows_accuracy() .or. found <= plan%controls%accuracy) return
       if (now%step_time < (1.0_rk - round_off)*plan%duration) return
       if (size(model%joints) > 0 .and. now%energy%shows_impacts()) return
-      call self%warn_once('step '//plan%name//': *CONTROLS, ACCURACY is not met: the estimated '// &
-                          'error in time is '//as_short_text(100.0_rk*found)//' % of the largest '// &
-                          'displacement; name a smaller smallest increment')
+      call self%warn_once('step '//plan%name//': *CONTROLS, ACCURACY is not met: the '// &
+                          'estimated error in time is '//as_short_text(100.0_rk*found)// &
+                          ' % of the largest displacement; name a smaller smallest increment')
     end associate
   end subroutine check_accuracy
 
