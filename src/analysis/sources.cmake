@@ -24,10 +24,12 @@ set(sources
   reduced/reduced_estimate.f90
   reduced/reduced_fields.f90
   reduced/reduced_increment.f90
+  reduced/reduced_limits.f90
   reduced/reduced_massless.f90
   reduced/reduced_nodes.f90
   reduced/reduced_ports.f90
   reduced/reduced_rest.f90
+  reduced/reduced_resume.f90
   reduced/reduced_scheme.f90
   reduced/reduced_shapes.f90
   reduced/shape_modes.f90

@@ -203,7 +203,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: is_stop
     if (now%increment == 0) return
-    is_stop = is_asked_to_stop()
+    is_stop = is_asked_to_stop() .and. .not. now%motion%modal%lacks_unknowns()
     if (now%is_last_of_step .and. now%step == size(model%steps)) is_stop = .false.
     if (is_stop .or. is_due(now, model%steps(now%step)%checkpoint_frequency)) then
       call self%keep(model, now, error)

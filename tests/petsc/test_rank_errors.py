@@ -184,6 +184,21 @@ def test_a_signal_to_all_ranks_stops_the_run(on_ranks):
     assert summary.with_name("job.ckpt.h5").exists()
 
 
+def test_a_signal_to_one_rank_stops_the_run(on_ranks):
+    """As a machine of the cluster sends it that is taken back: all ranks stop after the increment
+    that follows, with a checkpoint.
+    """
+    with long_run(on_ranks(2)) as (launcher, summary):
+        rank = process_of_rank(1, launcher.pid)
+        assert rank is not None
+        os.kill(rank, signal.SIGTERM)
+        assert launcher.wait(timeout=60) == 1
+    content = json.loads(summary.read_text())
+    assert content["status"] == "stopped"
+    assert "stopped by SIGTERM after increment" in content["message"]
+    assert summary.with_name("job.ckpt.h5").exists()
+
+
 def test_plain_program_names_the_build(keyway):
     """--solver needs PETSc."""
     run = keyway(BlockOnRock().deck(WEIGHT), "--solver", "ITERATIVE", code=2)

@@ -203,6 +203,19 @@ def test_reduced_model(keyway, on_ranks, tmp_path, ranks, solver):
     assert new["estimated_error"] == pytest.approx(old["estimated_error"], rel=1e-3)
 
 
+def test_modes_of_a_reduced_model(keyway, on_ranks):
+    """As many modes as ACCURACY asks for, most of all that this block has: each shape comes from
+    the one before, so that conjugate gradients would lose them. A reduced step takes the factor.
+    """
+    deck = rocking().replace("*DYNAMIC,", "*DYNAMIC, REDUCED,")
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(2)(deck, "--solver", "ITERATIVE")
+    (old,), (new,) = (run.json["accuracy"]["reduced"].values() for run in (plain, divided))
+    assert new["modes"] == old["modes"] > 100
+    # Of the last mode: round-off of all shapes before it.
+    assert new["highest_hz"] == pytest.approx(old["highest_hz"], rel=1e-3)
+    assert "factors by MUMPS" in (divided.folder / f"{divided.job}.log").read_text()
+
+
 @pytest.mark.parametrize("feature", FEATURES)
 def test_feature_by_conjugate_gradients(keyway, on_ranks, feature):
     """As `test_feature`, where increments end at 1e-8, to 1e-6 of the largest value."""

@@ -258,6 +258,7 @@ contains
     call fill(own%rest, n)
     call fill(own%rest_rate, n)
     call fill(own%rest_acceleration, n)
+    own%is_expanded = .true.
   end subroutine fill_modal
 
   !> What is known of a reduced model.

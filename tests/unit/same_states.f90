@@ -267,6 +267,7 @@ contains
     call compare(log, what//'rest', a%rest, b%rest)
     call compare(log, what//'rest_rate', a%rest_rate, b%rest_rate)
     call compare(log, what//'rest_acceleration', a%rest_acceleration, b%rest_acceleration)
+    call compare(log, what//'is_expanded', a%is_expanded, b%is_expanded)
   end subroutine compare_modal
 
   !> What is known of a reduced model.

@@ -24,6 +24,7 @@ module integrator_type
     type(solid_solver) :: solids !< solves an increment, joints and inelastic solids included
   contains
     procedure(open_step), deferred :: open_step
+    procedure :: resume => no_resumption
     procedure :: start_increment => no_preparation
     procedure(advance), deferred :: advance
     procedure :: store_state => store_nodes
@@ -62,6 +63,13 @@ module integrator_type
   end interface
 
 contains
+
+  !> Takes a state that was loaded in its step, after `open_step` has built the equations.
+  subroutine no_resumption(self, now, error)
+    class(integrator), intent(inout) :: self
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+  end subroutine no_resumption
 
   !> Prepares for an increment of this size.
   subroutine no_preparation(self, model, plan, dt, results, error)

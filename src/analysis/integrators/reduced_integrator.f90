@@ -7,7 +7,6 @@ module reduced_integrator
   use equilibrium, only: balance_outcome
   use errors, only: error_type, raise
   use global_vectors, only: dot, multiply, norm
-  use guest_forces, only: has_histories
   use hht_scheme, only: make_scheme
   use increment_listener, only: listener
   use integrator_type, only: integrator
@@ -21,16 +20,19 @@ module reduced_integrator
   use reduced_estimate, only: estimate_error
   use reduced_fields, only: expand_motion
   use reduced_increment, only: load_factors, modal_forces, take_reduced_increment
+  use reduced_limits, only: refuse_size
   use reduced_nodes, only: find_followed, followed_nodes
   use reduced_ports, only: static_solvers
+  use reduced_resume, only: resume_modes
   use reduced_scheme, only: reduced_matrices
   use reduced_shapes, only: find_shapes
   use solver_catalogue, only: make_solver, symmetric_solver
   use state_transfer, only: store_motion
   use step_equilibrium, only: make_equilibrium
-  use step_loads, only: external_force, step_time, support
+  use step_loads, only: external_force, step_time
   use step_plan, only: step
   use step_system, only: dam_system
+  use unknown_layout, only: direct_solver
   use write_text, only: as_short_text, as_text
   implicit none
   private
@@ -44,6 +46,7 @@ module reduced_integrator
     type(static_solvers) :: solvers !< the first one is that of `solids`, which has none then
   contains
     procedure :: open_step
+    procedure :: resume
     procedure :: start_increment
     procedure :: advance
     procedure :: store_state
@@ -56,14 +59,11 @@ module reduced_integrator
   !> are the remainder of an iteration.
   real(rk), parameter :: balanced_share = 1.0e-4_rk
 
-  !> Most points of joints: their compliance is a dense matrix.
-  integer, parameter :: most_points = 1500
   !> Modes of the first model, most modes, and growth from one model to the next.
   integer, parameter :: first_guess = 120, most_modes = 800
   real(rk), parameter :: least_growth = 1.3_rk, most_growth = 2.5_rk
   !> The error falls at least as quickly as this power of the number of modes.
   real(rk), parameter :: decay = 1.5_rk
-  real(rk), parameter :: round_off = 1.0e-12_rk !< of a displacement
   real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
   real(rk), parameter :: not_known = -1.0_rk !< an estimate that is not made
 
@@ -89,6 +89,8 @@ contains
     call build_dynamic_step(model, plan, self%system, self%solids, now, last, results, error)
     if (allocated(error)) return
     now%motion%modal = loaded
+    ! Several ranks: shapes need all digits of their solves.
+    if (self%system%matrix%is_shared) self%system%matrix%layout%solver = direct_solver
     call make_equilibrium(plan, self%system, .true., self%solids%solver, error)
     if (allocated(error)) return
     self%solids%solver%costs = results%costs
@@ -107,6 +109,14 @@ contains
     call results%report_increment(model, now, error)
   end subroutine open_step
 
+  !> Takes the motion of a checkpoint.
+  subroutine resume(self, now, error)
+    class(reduced_method), intent(inout) :: self
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    call resume_modes(self%basis, self%system, self%solvers, now, error)
+  end subroutine resume
+
   !> Takes the solver of the step, and makes another one for massless solids where there are some.
   subroutine take_solvers(self, model, results, error)
     class(reduced_method), intent(inout) :: self
@@ -120,32 +130,6 @@ contains
     if (allocated(error)) return
     call self%solvers%held%analyse(self%system%matrix, error)
   end subroutine take_solvers
-
-  !> Error: what the reduced model cannot hold and the reader of the deck cannot know.
-  subroutine refuse_size(system, now, error)
-    type(dam_system), intent(in) :: system
-    type(state), intent(in) :: now
-    type(error_type), allocatable, intent(out) :: error
-    if (system%operator%num_points > most_points) then
-      call raise(error, '*DYNAMIC, REDUCED holds up to '//as_text(most_points)//' points of '// &
-                 'joints, and the model has '//as_text(system%operator%num_points)// &
-                 '; take *DYNAMIC without REDUCED')
-    else if (has_histories(now%guests)) then
-      call raise(error, '*DYNAMIC, REDUCED holds no forces with a history other than those of '// &
-                 'joints; take *DYNAMIC without REDUCED')
-    else if (any(moves_at_once(system%supports))) then
-      call raise(error, '*DYNAMIC, REDUCED: a support of the step moves at its start, and a '// &
-                 'reduced model holds its supports; take *DYNAMIC without REDUCED, or move '// &
-                 'the support in a step before')
-    end if
-  end subroutine refuse_size
-
-  !> Whether a support has another displacement in the step than at its start.
-  elemental logical function moves_at_once(held)
-    type(support), intent(in) :: held
-    moves_at_once = abs(held%value - held%start_value) &
-                    > round_off*max(abs(held%value), abs(held%start_value))
-  end function moves_at_once
 
   !> Where the step starts from, its loads and its forces that are not balanced. A continued run has
   !> the start in its state.
@@ -317,6 +301,7 @@ contains
       modal%rest = modal%port
       modal%rest_rate = modal%port
       modal%rest_acceleration = modal%port
+      modal%is_expanded = .true.
       own%carried = modal%start_traction
       if (.not. allocated(own%jump_rate)) own%jump_rate = 0.0_rk*own%carried
       own%v(:n) = matmul(basis%mode, modal%rate)
@@ -344,7 +329,7 @@ contains
     call results%costs%stop()
   end subroutine start_increment
 
-  !> One increment.
+  !> One increment. A signal waits for its end, where the motion of all unknowns is found.
   subroutine advance(self, model, when, before, after, results, outcome, error)
     class(reduced_method), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -358,6 +343,7 @@ contains
     type(step_time) :: start
     start = when
     start%now = when%now - when%increment
+    self%solids%solver%controls%may_be_dropped = .false.
     call results%costs%start('iterate', 'structure', 'solver')
     associate (groups => self%system%groups, first => before%motion%modal%start_factor)
       factors(:, 1) = load_factors(groups, model%amplitudes, start, first)

@@ -45,6 +45,7 @@ contains
       own%balanced = own%inertia
       call system%find_damping_force(own%v, own%viscous)
       call sum_contact(system%operator, now)
+      modal%is_expanded = .true.
     end associate
   end subroutine expand_motion
 end module reduced_fields

@@ -182,6 +182,7 @@ contains
     type(state), intent(inout) :: after
     real(rk), dimension(3, operator%num_points) :: last_jump, traction
     associate (scheme => matrices%scheme, old => before%motion%modal, new => after%motion%modal)
+      new%is_expanded = .false.
       call find_rates(scheme, old%y, old%rate, old%acceleration, new%y, new%rate, &
                       new%acceleration)
       call find_rates(scheme, old%port, old%port_rate, old%port_acceleration, new%port, &

@@ -100,6 +100,9 @@ module analysis_state
     !> (ports) forces on joints [N], then factors of loads, whose static response the rest has
     real(rk), allocatable :: port(:), port_rate(:), port_acceleration(:)
     real(rk), allocatable :: rest(:), rest_rate(:), rest_acceleration(:) !< (ports) that response
+    logical :: is_expanded = .false. !< the motion of all unknowns is that of the modes and ports
+  contains
+    procedure :: lacks_unknowns
   end type modal_motion
 
   !> Motion and forces in the unknowns of a step. The integrator allocates what it needs.
@@ -198,6 +201,12 @@ contains
     class(energy_balance), intent(in) :: self
     shows_impacts = self%numerical > impact_share*self%largest
   end function shows_impacts
+
+  !> Whether the motion of a reduced model is known in its modes and ports alone.
+  pure logical function lacks_unknowns(self)
+    class(modal_motion), intent(in) :: self
+    lacks_unknowns = allocated(self%y) .and. .not. self%is_expanded
+  end function lacks_unknowns
 
   !> The largest error so far over the largest displacement.
   pure real(rk) function relative(self)

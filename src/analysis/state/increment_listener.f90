@@ -1,5 +1,6 @@
 !> The interface through which the solvers report increments to the results layer.
 module increment_listener
+  use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: rk
   use errors, only: error_type, raise
   use logging, only: run_log
@@ -7,9 +8,9 @@ module increment_listener
   use problem_definition, only: problem
   use analysis_state, only: state, vibration_mode
   use dual_solutions, only: dual_solution
-  use ranks, only: add_over_ranks, is_first_rank, num_ranks, &
+  use ranks, only: add_over_ranks, is_first_rank, largest_of_ranks, num_ranks, &
                    number_of_first_rank, share_error
-  use stop_signals, only: name_of_signal
+  use stop_signals, only: name_of_signal, stop_signal, take_signal
   implicit none
   private
   public :: listener
@@ -105,7 +106,8 @@ contains
     if (shared(size(shared)) > 0.5_rk) stiffening = shared(:size(shape, 3))
   end subroutine stiffening_of_modes
 
-  !> Reports an increment. The results are one rank's; their failure is that of all ranks.
+  !> Reports an increment. The results are one rank's; their failure is that of all ranks. A signal
+  !> to any rank stops the run after the next increment.
   subroutine report_increment(self, model, now, error)
     class(listener), intent(inout) :: self
     type(problem), intent(in) :: model
@@ -113,6 +115,8 @@ contains
     type(error_type), allocatable, intent(out) :: error
     call self%increment_done(model, now, error)
     call share_error(error)
+    if (allocated(error) .or. num_ranks() == 1) return
+    call take_signal(int(largest_of_ranks(stop_signal()), c_int))
   end subroutine report_increment
 
   !> Reports modes, as `report_increment` does an increment.

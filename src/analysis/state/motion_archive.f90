@@ -100,6 +100,7 @@ contains
     call file%put('rest', own%rest)
     call file%put('rest_rate', own%rest_rate)
     call file%put('rest_acceleration', own%rest_acceleration)
+    call file%put('is_expanded', own%is_expanded)
   end subroutine save_modal
 
   !> Reads the motion of a reduced model.
@@ -118,5 +119,6 @@ contains
     call file%get('rest', own%rest)
     call file%get('rest_rate', own%rest_rate)
     call file%get('rest_acceleration', own%rest_acceleration)
+    call file%get('is_expanded', own%is_expanded)
   end subroutine load_modal
 end module motion_archive

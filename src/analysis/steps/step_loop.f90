@@ -152,7 +152,10 @@ contains
       if (size(now%motion%q) == size(loaded%motion%q) &
           .and. now%num_unknowns == loaded%num_unknowns) then
         call move_alloc(loaded, now)
-        call restore_matrix(model, plan, method, now, results, error)
+        call method%resume(now, error)
+        if (.not. allocated(error)) then
+          call restore_matrix(model, plan, method, now, results, error)
+        end if
         return
       end if
     end if

@@ -11,7 +11,7 @@ module ranks
   private
   public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
   public :: exchange_seconds, num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere
-  public :: number_of_first_rank, text_of_first_rank, share_error
+  public :: largest_of_ranks, number_of_first_rank, text_of_first_rank, share_error
 
   !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
   !> results meanwhile.
@@ -158,6 +158,12 @@ contains
     is_true_everywhere = keyway_least_of_ranks(merge(1_c_int, 0_c_int, holds)) == 1
   end function is_true_everywhere
 
+  !> The largest number that any rank has.
+  integer function largest_of_ranks(own) result(number)
+    integer, intent(in) :: own !< more than -huge(1)
+    number = -int(keyway_least_of_ranks(int(-own, c_int)))
+  end function largest_of_ranks
+
   !> The number that the first rank has, on all ranks.
   integer function number_of_first_rank(own) result(number)
     integer, intent(in) :: own !< used on the first rank; less than huge(1)
@@ -178,8 +184,8 @@ contains
     if (rank == keyway_num_ranks()) return
     head = 0_c_int
     if (rank == keyway_this_rank()) head = int([error%exit_code, len(error%message)], c_int)
-    head(1) = -keyway_least_of_ranks(-head(1))
-    head(2) = -keyway_least_of_ranks(-head(2))
+    head(1) = int(largest_of_ranks(int(head(1))), c_int)
+    head(2) = int(largest_of_ranks(int(head(2))), c_int)
     text = repeat(' ', head(2))
     if (rank == keyway_this_rank()) text = error%message
     text = text_of_rank(rank, text)

@@ -3,7 +3,8 @@ module stop_signals
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   implicit none
   private
-  public :: catch_signals, outlive_signal, is_asked_to_stop, name_of_signal, has_met_file_limit
+  public :: catch_signals, outlive_signal, take_signal, stop_signal, is_asked_to_stop
+  public :: name_of_signal, has_met_file_limit
 
   interface
     !> Catches signals; a crash marks the summary at `path` (system_calls.c).
@@ -27,6 +28,13 @@ module stop_signals
       integer(c_int) :: number
     end function c_stop_signal
 
+    !> A signal that has asked another process of the run to stop; 0 for none.
+    subroutine take_signal(number) bind(c, name='keyway_take_signal')
+      import :: c_int
+      implicit none
+      integer(c_int), value :: number
+    end subroutine take_signal
+
     !> Not 0 when a write has met the limit of file sizes.
     function c_has_met_limit() result(answer) bind(c, name='keyway_has_met_limit')
       import :: c_int
@@ -43,6 +51,11 @@ contains
     character(*), intent(in) :: summary !< path of job.json; '' after the end of the run
     call c_catch_signals(summary//c_null_char)
   end subroutine catch_signals
+
+  !> The first signal that has asked the run to stop, 0 for none.
+  integer function stop_signal() result(number)
+    number = int(c_stop_signal())
+  end function stop_signal
 
   !> Whether a signal has asked the run to stop.
   logical function is_asked_to_stop()

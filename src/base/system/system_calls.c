@@ -195,8 +195,14 @@ void keyway_catch_signals(const char *path) {
   atexit(mark_at_end);
 }
 
+/* A signal that has asked another process of the run to stop. The first one that this process gets
+ * itself still does not end it. */
+static int taken_signal;
+
+void keyway_take_signal(int signal_number) { taken_signal = signal_number; }
+
 /* The signal that asked to stop, 0 for none. */
-int keyway_stop_signal(void) { return first_signal; }
+int keyway_stop_signal(void) { return first_signal ? first_signal : taken_signal; }
 
 /* Whether a write met the limit of file sizes. */
 int keyway_has_met_limit(void) { return has_met_limit; }

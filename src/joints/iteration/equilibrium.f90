@@ -225,12 +225,20 @@ contains
     type(error_type), allocatable, intent(out) :: error
   end subroutine take_no_blocks
 
-  !> Norm of the residual that a solve may leave.
+  !> Norm of the residual that a solve may leave. In statics the forces of a small increment are
+  !> small beside those so far, and the tolerance of its correction counts.
   real(rk) function admissible_residual(self, balance)
     class(equilibrium_solver), intent(in) :: self
     type(force_balance), intent(in) :: balance
-    admissible_residual = share_of_solve*self%controls%residual_tolerance &
-                          *max(balance%reference_force, norm(balance%rhs))
+    real(rk) :: force
+    force = norm(balance%rhs)
+    associate (controls => self%controls)
+      admissible_residual = controls%residual_tolerance*max(balance%reference_force, force)
+      if (balance%is_static .and. force > 0.0_rk) then
+        admissible_residual = min(admissible_residual, controls%increment_tolerance*force)
+      end if
+    end associate
+    admissible_residual = share_of_solve*admissible_residual
   end function admissible_residual
 
   !> Completes a solution at active unknowns alone.

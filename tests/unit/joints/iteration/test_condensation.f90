@@ -6,6 +6,8 @@ program test_condensation
   use problem_definition, only: problem
   use analysis_state, only: state
   use amplitudes, only: amplitude
+  use condensation, only: condensed_equilibrium
+  use equilibrium, only: force_balance
   use initial_state, only: start_analysis
   use step_loop, only: run_all_steps
   use joint_law, only: state_open, state_slip
@@ -20,6 +22,7 @@ program test_condensation
   log%suite = 'condensation'
   call compare(.false.)
   call compare(.true.)
+  call limit_solves()
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
 
@@ -49,6 +52,28 @@ contains
     end associate
     call check(log, condensed%worst_error < 1.0e-6_rk, 'energy closes')
   end subroutine compare
+
+  !> What solves may leave: a part of RESIDUAL times the largest force, and in statics of INCREMENT
+  !> times the forces of the increment, which may be far smaller.
+  subroutine limit_solves()
+    type(condensed_equilibrium) :: solver
+    type(force_balance) :: balance
+    real(rk) :: moving
+    balance%rhs = [3.0_rk, 4.0_rk]
+    balance%reference_force = 1.0e6_rk
+    solver%controls%residual_tolerance = 1.0e-6_rk
+    solver%controls%increment_tolerance = 1.0e-4_rk
+    moving = solver%admissible_residual(balance)
+    balance%is_static = .true.
+    call check_close(log, solver%admissible_residual(balance)/moving, 5.0e-4_rk, 1.0e-15_rk, &
+                     'a small static increment')
+    balance%rhs = 1.0e6_rk*balance%rhs
+    call check_close(log, solver%admissible_residual(balance)/moving, 5.0_rk, 1.0e-12_rk, &
+                     'a large one')
+    balance%rhs = 0.0_rk*balance%rhs
+    call check_close(log, solver%admissible_residual(balance)/moving, 1.0_rk, 1.0e-15_rk, &
+                     'one without forces')
+  end subroutine limit_solves
 
   !> Weight, then a strong shake along the valley.
   subroutine shake_arch(joint_solver, is_held, results, now)
