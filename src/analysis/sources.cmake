@@ -18,6 +18,7 @@ set(sources
   modes/eigen_modes.f90
   modes/modal_damping.f90
   modes/opening_error.f90
+  modes/resumed_modes.f90
   modes/time_error.f90
   reduced/reduced_basis.f90
   reduced/reduced_energy.f90

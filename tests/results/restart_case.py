@@ -166,12 +166,17 @@ def kill_at(process: subprocess.Popen, table: Path, row: int, number: int, delay
 
 
 def continue_killed(
-    program: Path, deck_file: Path, out: Path, options: list[str], kills: list[tuple[int, float]]
+    program: Path,
+    deck_file: Path,
+    out: Path,
+    options: list[str],
+    kills: list[tuple[int, float]],
+    goes_on: bool = False,
 ) -> int:
     """Runs the deck, kills it at each (row, delay) and goes on; returns the number of kills."""
     table = out / f"{deck_file.stem}_energy.csv"
     num_killed = 0
-    more: list[str] = []
+    more = ["--continue"] if goes_on else []
     for row, delay in kills:
         process = start(program, "-q", "-o", out, *options, *more, deck_file)
         kill_at(process, table, row, signal.SIGKILL, delay)

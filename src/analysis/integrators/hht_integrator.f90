@@ -5,6 +5,7 @@ module hht_integrator
   use errors, only: error_type
   use global_vectors, only: dot, multiply, work
   use problem_definition, only: problem
+  use resumed_modes, only: resume_modal_error
   use step_plan, only: step
   use analysis_state, only: motion, state
   use state_transfer, only: sum_contact
@@ -40,6 +41,7 @@ module hht_integrator
     type(error_modes) :: modes !< of the estimate of the error in time; empty without it
   contains
     procedure :: open_step
+    procedure :: resume
     procedure :: start_increment
     procedure :: advance
     procedure :: store_state
@@ -87,6 +89,14 @@ contains
     call results%costs%stop()
     if (allocated(self%modes%square)) call weigh_shapes(self, model, now, results)
   end subroutine open_step
+
+  !> The errors in time of a checkpoint belong to its modes.
+  subroutine resume(self, now, error)
+    class(hht_method), intent(inout) :: self
+    type(state), intent(inout) :: now
+    type(error_type), allocatable, intent(out) :: error
+    if (allocated(self%modes%square)) call resume_modal_error(self%modes, now%motion, now%timing)
+  end subroutine resume
 
   !> Starts the exact motion of the modes.
   subroutine follow_modes(self, model, plan, now)

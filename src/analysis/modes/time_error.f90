@@ -18,6 +18,7 @@ module time_error
   implicit none
   private
   public :: error_modes, make_error_modes, start_modal_error, take_modal_error
+  public :: displacement_of, drive_modes
   public :: note_largest, note_lost_forces, is_worth_its_cost, start_mesh_error
 
   integer, parameter :: most_modes = 10
@@ -97,7 +98,8 @@ contains
     end associate
   end subroutine make_error_modes
 
-  !> Gives the largest entry of each mode a positive sign: a continued run finds the same modes.
+  !> Gives the largest entry of each mode a positive sign: as a rule a continued run finds the same
+  !> modes. Modes of symmetric dams have two such entries (resumed_modes).
   pure subroutine point_upwards(shape)
     real(rk), intent(inout) :: shape(:, :) !< (num_free, modes)
     integer :: k
