@@ -101,6 +101,15 @@ def test_bonds_that_break(keyway, strength, breaks):
     assert (openings(run, 2).max() > 1e-3) == breaks
 
 
+@pytest.mark.parametrize(("modes", "is_small"), [(60, True), (40, False)])
+def test_note_on_small_models(keyway, modes, is_small):
+    """A dam of 1122 unknowns: fewer than 20 for each of 60 modes, more for each of 40."""
+    _, deck, files = decks(dataclasses.replace(SHAKEN, duration=0.05), f", MODES={modes}")
+    run = keyway(deck, files=files)
+    log = (run.folder / f"{run.job}.log").read_text()
+    assert ("without REDUCED may take less time" in log) == is_small
+
+
 def test_modal_damping(keyway):
     """Modal damping beside a little Rayleigh damping."""
     little = "*DAMPING, RATIO=0.02, F1=2, F2=10"

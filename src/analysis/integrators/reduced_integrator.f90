@@ -64,6 +64,9 @@ module reduced_integrator
   real(rk), parameter :: least_growth = 1.3_rk, most_growth = 2.5_rk
   !> The error falls at least as quickly as this power of the number of modes.
   real(rk), parameter :: decay = 1.5_rk
+  !> Unknowns for each mode from which on increments of the reduced model take less time than those
+  !> of the full one, with few joints.
+  integer, parameter :: worth_reducing = 20
   real(rk), parameter :: two_pi = 2.0_rk*acos(-1.0_rk)
   real(rk), parameter :: not_known = -1.0_rk !< an estimate that is not made
 
@@ -207,7 +210,10 @@ contains
       if (wanted >= most_modes .or. self%basis%num_shapes < wanted) exit
       wanted = min(most_modes, grown(wanted, estimate/plan%reduced%accuracy))
     end do
-    if (estimate < 1.0_rk .or. plan%reduced%num_modes > 0) return
+    if (estimate < 1.0_rk .or. plan%reduced%num_modes > 0) then
+      call note_size(self%system%matrix%num_free, self%basis%num_modes, results)
+      return
+    end if
     call raise(error, 'no reduced model follows the step: its openings are not known within '// &
                '100 %, or it finds no equilibrium; take *DYNAMIC without REDUCED')
   end subroutine build_model
@@ -258,6 +264,16 @@ contains
     end if
     call results%log%say(text)
   end subroutine say_model
+
+  !> Says in the log where the full model is hardly larger than the reduced one.
+  subroutine note_size(num_unknowns, num_modes, results)
+    integer, intent(in) :: num_unknowns, num_modes
+    class(listener), intent(inout) :: results
+    if (num_unknowns >= worth_reducing*num_modes) return
+    call results%log%note('reduced model: '//as_text(num_modes)//' modes for '// &
+                          as_text(num_unknowns)//' unknowns; *DYNAMIC without REDUCED may take '// &
+                          'less time')
+  end subroutine note_size
 
   !> Forces that the shapes start with: loads that may change, forces that are not balanced at the
   !> start, and one that no symmetry of the dam leaves out.
