@@ -25,7 +25,10 @@ contains
     type(motion), intent(in) :: moving !< of the checkpoint
     type(modal_error), intent(inout) :: own !< of the checkpoint
     real(rk), dimension(size(modes%square)) :: q, rate, drive, old, turn
-    if (size(own%exact) /= size(modes%square)) then
+    logical :: fits
+    fits = allocated(own%exact)
+    if (fits) fits = size(own%exact) == size(modes%square)
+    if (.not. fits) then
       deallocate (modes%square)
       return
     end if
