@@ -225,6 +225,19 @@ def test_feature_by_conjugate_gradients(keyway, on_ranks, feature):
     assert size <= 1e-6, place
 
 
+def test_small_increment_by_conjugate_gradients(keyway, on_ranks):
+    """A small static force on concrete that has cracked in a motion needs no cut-back, as with a
+    factor: what solves leave is small beside its increment. 1e-4 of the largest displacement: ten
+    15 increments of motion on cracks, each within RESIDUAL=1e-6.
+    """
+    deck = Path(__file__).with_name("small_force.inp")
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(2)(deck, "--solver", "ITERATIVE")
+    assert plain.json["steps"][-1]["cutbacks"] == divided.json["steps"][-1]["cutbacks"] == 0
+    expected, found = plain.csv("node_CREST"), divided.csv("node_CREST")
+    for name in ("U1", "U2", "U3"):
+        assert found[name] == pytest.approx(expected[name], abs=1e-4 * abs(expected[name]).max())
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("top", [2, 3], ids=["all", "faces"])
 def test_joint_between_held_faces(keyway, on_ranks, ranks, top):
