@@ -168,30 +168,17 @@ def test_a_rank_that_is_killed_ends_all(on_ranks):
     assert json.loads(summary.read_text())["status"] in {"running", "stopped"}
 
 
-def test_a_signal_to_all_ranks_stops_the_run(on_ranks):
-    """As the launcher of a cluster sends it at the end of the time: rank 0 ends the run after its
-    increment, with a checkpoint, although the others have the signal first.
+@pytest.mark.parametrize("numbers", [(1, 0), (1,)], ids=["all", "one"])
+def test_a_signal_to_ranks_stops_the_run(on_ranks, numbers):
+    """To all as the launcher of a cluster sends it at the end of the time, although the others have
+    it before rank 0; to one as a machine gets it that is taken back. Rank 0 ends the run after an
+    increment, with a checkpoint.
     """
     with long_run(on_ranks(2)) as (launcher, summary):
-        for number in (1, 0):
+        for number in numbers:
             rank = process_of_rank(number, launcher.pid)
             assert rank is not None
             os.kill(rank, signal.SIGTERM)
-        assert launcher.wait(timeout=60) == 1
-    content = json.loads(summary.read_text())
-    assert content["status"] == "stopped"
-    assert "stopped by SIGTERM after increment" in content["message"]
-    assert summary.with_name("job.ckpt.h5").exists()
-
-
-def test_a_signal_to_one_rank_stops_the_run(on_ranks):
-    """As a machine of the cluster sends it that is taken back: all ranks stop after the increment
-    that follows, with a checkpoint.
-    """
-    with long_run(on_ranks(2)) as (launcher, summary):
-        rank = process_of_rank(1, launcher.pid)
-        assert rank is not None
-        os.kill(rank, signal.SIGTERM)
         assert launcher.wait(timeout=60) == 1
     content = json.loads(summary.read_text())
     assert content["status"] == "stopped"

@@ -12,8 +12,6 @@ submodule(run_records) run_warnings
   !> the energy.
   real(rk), parameter :: largest_dissipation = 0.3_rk
 
-  real(rk), parameter :: round_off = 1.0e-9_rk !< of the duration of a step
-
   !> Nearer to the limit of ALPHA, -1/3, more damping of the scheme is no advice.
   real(rk), parameter :: strong_alpha = -0.25_rk
 
@@ -115,7 +113,7 @@ contains
     type(state), intent(in) :: now
     associate (plan => model%steps(now%step), found => now%accuracy%relative())
       if (.not. plan%follows_accuracy() .or. found <= plan%controls%accuracy) return
-      if (now%step_time < (1.0_rk - round_off)*plan%duration) return
+      if (.not. now%is_last_of_step) return
       if (size(model%joints) > 0 .and. now%energy%shows_impacts()) return
       call self%warn_once('step '//plan%name//': *CONTROLS, ACCURACY is not met: the '// &
                           'estimated error in time is '//as_short_text(100.0_rk*found)// &
