@@ -9,11 +9,11 @@ module solver_petsc
   use blas_threads, only: use_many_threads, use_one_thread
   use linear_solver, only: equation_solver
   use matrix_pattern, only: pattern
-  use petsc_equations, only: by_blocks, by_cholesky, by_compressed, by_lu, by_multigrid, &
-                             drop_petsc_patch, entries_of_petsc, factor_petsc, finish_petsc, &
-                             is_done, is_singular, is_slow, memory_of_petsc, plan_petsc, &
-                             rows_of_petsc_patch, shift_of_petsc, solve_petsc, &
-                             solve_petsc_patch, start_petsc, sum_petsc, take_petsc_patch
+  use petsc_equations, only: by_cholesky, by_compressed, by_iteration, by_lu, drop_petsc_patch, &
+                             entries_of_petsc, factor_petsc, finish_petsc, is_done, is_singular, &
+                             is_slow, memory_of_petsc, plan_petsc, rows_of_petsc_patch, &
+                             shift_of_petsc, solve_petsc, solve_petsc_patch, start_petsc, &
+                             sum_petsc, take_petsc_patch
   use ranks, only: gather_rows, share_error, this_rank
   use unknown_layout, only: choose_solver, compressed_solver, direct_solver, own_rows, row_layout
   use write_text, only: as_text
@@ -76,8 +76,7 @@ contains
     if (layout%solver == choose_solver) then
       is_direct = layout%first_row(size(layout%first_row)) <= most_direct
     end if
-    method = merge(by_blocks, by_multigrid, layout%has_inertia)
-    if (is_direct) method = by_cholesky
+    method = merge(by_cholesky, by_iteration, is_direct)
     if (layout%solver == compressed_solver) method = by_compressed
   end function method_of
 
@@ -90,10 +89,8 @@ contains
       text = 'factors by MUMPS'
     case (by_compressed)
       text = 'conjugate gradients with factors of low-rank blocks by MUMPS'
-    case (by_multigrid)
-      text = 'conjugate gradients with multigrid'
     case default
-      text = 'conjugate gradients with an incomplete factor of each rank'
+      text = 'conjugate gradients with an incomplete factor and the motions of groups of nodes'
     end select
     text = as_text(layout%first_row(size(layout%first_row)))//' equations, '//text
   end function method_text
@@ -263,7 +260,7 @@ contains
   !> Whether solves are iterations, and there are equations.
   logical function has_patches(self)
     class(petsc_solver), intent(in) :: self
-    has_patches = self%is_ready .and. (self%method == by_blocks .or. self%method == by_multigrid)
+    has_patches = self%is_ready .and. self%method == by_iteration
   end function has_patches
 
   !> Takes the patch of this rank.

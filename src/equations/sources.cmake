@@ -34,9 +34,10 @@ set(sources
 )
 # What stands behind petsc_equations.f90
 if(KEYWAY_PETSC)
-  list(APPEND sources distributed/block_matrix.c distributed/incomplete_factor.c
-       distributed/last_solutions.c distributed/matrix_patch.c distributed/multigrid.c
-       distributed/mumps_factor.c distributed/petsc_bridge.c)
+  list(APPEND sources distributed/iteration/block_matrix.c distributed/iteration/coarse_space.c
+       distributed/iteration/incomplete_factor.c distributed/iteration/last_solutions.c
+       distributed/iteration/node_groups.c distributed/iteration/two_levels.c
+       distributed/matrix_patch.c distributed/mumps_factor.c distributed/petsc_bridge.c)
 else()
   list(APPEND sources distributed/without_petsc.c)
 endif()

@@ -1,6 +1,6 @@
 !> The rows of the distributed matrix: which rank owns each row, and which unknown stands in it.
 !>
-!> Three rows belong to one node, so that multigrid sees blocks of 3 x 3. A component of a node that
+!> Three rows belong to one node, so that the matrix has blocks of 3 x 3. A component of a node that
 !> is no free unknown has a row of its own with a diagonal entry alone.
 module unknown_layout
   use kinds, only: rk
@@ -19,7 +19,6 @@ module unknown_layout
     integer, allocatable :: row(:) !< (num_free) row of each free unknown, from 0
     logical, allocatable :: is_touched(:) !< (num_free) this rank adds to the row
     real(rk), allocatable :: rigid(:, :) !< (own rows, 6) motions of a rigid body [m]
-    logical :: has_inertia = .false. !< mass makes the matrix well conditioned, or most of it
     integer :: solver = choose_solver
   end type row_layout
 

@@ -31,6 +31,7 @@ class BlockOnRock:
     coupling: str = "*TIE, NAME=T\nSOLE, ROOF\n"
     rock_has_mass: bool = True
     element: str = "C3D8I"
+    poisson: float = 0.2
     supports: str = "BED, 1, 3\n"
 
     def deck(self, steps: str) -> str:
@@ -52,7 +53,7 @@ class BlockOnRock:
         rock_density = 2600.0 if self.rock_has_mass else None
         return (
             mesh_deck(mesh, {"BLOCK": self.element, "ROCK": "C3D8"}, "")
-            + elastic(3e10, 0.2, 2400.0).replace("BODY", "BLOCK")
+            + elastic(3e10, self.poisson, 2400.0).replace("BODY", "BLOCK")
             + elastic(2e10, 0.25, rock_density).replace("BODY", "ROCK").replace("=M\n", "=R\n")
             + self.coupling
             + (f"*BOUNDARY\n{self.supports}" if self.supports else "")
@@ -77,12 +78,26 @@ SPRINGS = "*TIE, NAME=T, STIFFNESS=1e11\nSOLE, ROOF\n"
 def stretched_dam() -> dict[str, str]:
     """An arch dam of 14 832 unknowns, files by name: weight and water, five increments of motion.
     Each of 8 layers of massless rock is 2.2 times as thick as the one before."""
-    rock = RockOptions(num_upstream=8, num_downstream=8, num_deep=8, growth=2.2)
-    mesh = build_arch_dam(ArchShape(), DamOptions(28, 12, 3, 4, num_joints=0, rock=rock))
+    return dam_on_layers(DamOptions(28, 12, 3, 4, num_joints=0, rock=rock_layers(8, 2.2)))
+
+
+def refined_dam(factor: int) -> dict[str, str]:
+    """An arch dam with even rock, every element divided by `factor` in each direction."""
+    layers = rock_layers(2 * factor, 1.6 ** (1.0 / factor))
+    counts = (16 * factor, 6 * factor, 2 * factor, 4 * factor)
+    return dam_on_layers(DamOptions(*counts, num_joints=0, rock=layers))
+
+
+def rock_layers(count: int, growth: float) -> RockOptions:
+    return RockOptions(num_upstream=count, num_downstream=count, num_deep=count, growth=growth)
+
+
+def dam_on_layers(dam: DamOptions) -> dict[str, str]:
+    mesh = build_arch_dam(ArchShape(), dam)
     options = DeckOptions(motions=("motion.txt",), duration=0.05, picture_frequency=10**6)
     motion = "\n".join(f"{np.sin(20.0 * t):.9g}" for t in np.arange(0.0, 0.055, options.motion_dt))
     return {
-        "job.inp": arch_dam_deck(mesh, "stretched rock", "mesh.inp", options),
+        "job.inp": arch_dam_deck(mesh, "layers of rock", "mesh.inp", options),
         "mesh.inp": mesh_deck(mesh, dict.fromkeys(mesh.brick_sets, "C3D8"), ""),
         "motion.txt": motion + "\n",
     }

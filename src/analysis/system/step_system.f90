@@ -224,10 +224,7 @@ contains
     call build_pattern(system%numbers, cells, system%matrix)
     if (allocated(model%mesh%rank_of_element)) then
       call lay_out_rows(model%mesh, system%numbers, cells, system%matrix)
-      associate (layout => system%matrix%layout)
-        layout%solver = model%equation_solver
-        layout%has_inertia = plan%procedure%has_inertia
-      end associate
+      system%matrix%layout%solver = model%equation_solver
     end if
     call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)
     call place_joints(plan%procedure%has_inertia, system)

@@ -10,6 +10,7 @@ module matrix_rows
   use kinds, only: rk
   use matrix_pattern, only: pattern
   use node_dofs, only: num_directions
+  use node_sequence, only: order_nodes
   use ranks, only: num_ranks, this_rank
   use row_tables, only: row_table
   use unknown_layout, only: own_rows
@@ -44,10 +45,11 @@ contains
     integer, allocatable, intent(out) :: first_row(:) !< (ranks + 1) from 0
     integer, allocatable, intent(out) :: row(:) !< (num_free) from 0
     integer, allocatable, intent(out) :: first_of_node(:) !< (nodes) from 0; -1: no rows
-    integer :: owner(mesh%num_nodes)
-    integer :: rank, node, next, j, first_jump
+    integer :: owner(mesh%num_nodes), sequence(mesh%num_nodes)
+    integer :: rank, k, next, j, first_jump
     logical :: has_rows(mesh%num_nodes)
     call find_owners(mesh, owner)
+    call order_nodes(mesh, sequence)
     first_jump = numbers%num_free - numbers%num_jumps + 1
     has_rows = .false.
     has_rows(numbers%node(:first_jump - 1)) = .true.
@@ -56,9 +58,9 @@ contains
     next = 0
     do rank = 0, num_ranks() - 1
       first_row(rank + 1) = next
-      do node = 1, mesh%num_nodes
-        if (owner(node) /= rank .or. .not. has_rows(node)) cycle
-        first_of_node(node) = next
+      do k = 1, mesh%num_nodes
+        if (owner(sequence(k)) /= rank .or. .not. has_rows(sequence(k))) cycle
+        first_of_node(sequence(k)) = next
         next = next + num_directions
       end do
       do j = first_jump, numbers%num_free, num_axes

@@ -3,17 +3,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "block_matrix.h"
-#include "incomplete_factor.h"
-#include "last_solutions.h"
+#include "iteration/block_matrix.h"
+#include "iteration/last_solutions.h"
+#include "iteration/two_levels.h"
 #include "matrix_patch.h"
-#include "multigrid.h"
 #include "mumps_factor.h"
 
 _Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
 _Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with real scalars");
 
-enum { by_cholesky = 1, by_multigrid = 2, by_blocks = 3, by_lu = 4, by_compressed = 5 };
+enum { by_cholesky = 1, by_iteration = 2, by_lu = 3, by_compressed = 4 };
 enum { done = 0, singular = 1, slow = 2, failed = 3 };
 enum { rows_of_node = 3, most_iterations = 5000 };
 
@@ -29,10 +28,10 @@ struct equations {
   int method;
   int rows;
   Mat matrix;
-  Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_blocks and by_multigrid */
-  struct incomplete_factor incomplete; /* of the blocks */
+  Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_iteration */
+  struct two_levels levels; /* by_iteration */
   KSP solver;
-  Vec b, x;
+  Vec b, x, rest; /* rest: of b, at the start of an iteration */
   struct last_solutions last;
   struct matrix_patch patch;
 };
@@ -67,9 +66,6 @@ void *keyway_petsc_start(void)
     if (PetscInitializeNoArguments()) return NULL;
     if (PetscPushErrorHandler(keep_quiet, NULL)) return NULL;
     if (set_default("-keyway_sub_pc_type", "icc")) return NULL;
-    if (set_default("-keyway_finest_sub_pc_type", "icc")) return NULL;
-    if (set_default("-keyway_mg_levels_pc_type", "sor")) return NULL;
-    if (set_default("-keyway_pc_gamg_threshold", "0.01")) return NULL;
   }
   return calloc(1, sizeof(struct equations));
 }
@@ -81,11 +77,12 @@ void keyway_petsc_finish(void *handle)
   KSPDestroy(&self->solver);
   MatDestroy(&self->matrix);
   MatDestroy(&self->blocks);
-  MatDestroy(&self->incomplete.shifted);
+  forget_two_levels(&self->levels);
   forget_solutions(&self->last);
   forget_patch(&self->patch);
   VecDestroy(&self->b);
   VecDestroy(&self->x);
+  VecDestroy(&self->rest);
   free(self);
 }
 
@@ -101,22 +98,17 @@ static int has_factor(const struct equations *self)
 
 static PetscErrorCode choose_method(struct equations *self)
 {
-  PC pc;
   PetscFunctionBegin;
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &self->solver));
   PetscCall(KSPSetOptionsPrefix(self->solver, "keyway_"));
   PetscCall(KSPSetOperators(self->solver, self->matrix, self->matrix));
-  PetscCall(KSPGetPC(self->solver, &pc));
   PetscCall(KSPSetType(self->solver, is_direct(self) ? KSPPREONLY : KSPCG));
   if (!is_direct(self)) {
     PetscCall(KSPSetNormType(self->solver, KSP_NORM_UNPRECONDITIONED));
     PetscCall(KSPSetInitialGuessNonzero(self->solver, PETSC_TRUE));
   }
-  if (has_factor(self)) {
+  if (has_factor(self))
     PetscCall(choose_mumps(self->solver, self->method != by_lu, self->method == by_compressed));
-  } else {
-    PetscCall(PCSetType(pc, self->method == by_multigrid ? PCGAMG : PCBJACOBI));
-  }
   PetscCall(KSPSetFromOptions(self->solver));
   PetscFunctionReturn(0);
 }
@@ -132,7 +124,9 @@ static PetscErrorCode plan(struct equations *self, const double *rigid, size_t e
   PetscCall(MatSetPreallocationCOO(self->matrix, (PetscCount)entries, row, column));
   if (self->method != by_lu) PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(self->matrix, &self->x, &self->b));
-  if (self->method == by_multigrid) PetscCall(give_rigid_motions(self->matrix, self->rows, rigid));
+  PetscCall(VecDuplicate(self->b, &self->rest));
+  if (self->method == by_iteration)
+    PetscCall(keep_rigid_motions(&self->levels.coarse, self->rows, rigid));
   PetscCall(choose_method(self));
   PetscFunctionReturn(0);
 }
@@ -217,15 +211,8 @@ static PetscErrorCode set_up_blocks(struct equations *self, int *status)
   int is_definite;
   PetscFunctionBegin;
   PetscCall(copy_to_blocks(self->matrix, &self->blocks));
-  if (self->method == by_multigrid) {
-    /* New levels: those of a matrix before would keep their smoothers. */
-    PetscCall(KSPDestroy(&self->solver));
-    PetscCall(choose_method(self));
-    PetscCall(set_up_multigrid(self->solver, self->matrix, self->blocks, &self->incomplete,
-                               &is_definite));
-  } else {
-    PetscCall(set_up_incomplete(&self->incomplete, self->solver, self->blocks, &is_definite));
-  }
+  PetscCall(set_up_two_levels(&self->levels, self->solver, self->matrix, self->blocks,
+                              &is_definite));
   *status = is_definite ? done : singular;
   PetscFunctionReturn(0);
 }
@@ -243,18 +230,6 @@ static PetscErrorCode factor(struct equations *self, int *status)
   PetscFunctionBegin;
   if (has_factor(self)) PetscCall(set_up_factor(self, status));
   else PetscCall(set_up_blocks(self, status));
-  PetscFunctionReturn(0);
-}
-
-/* The preconditioner with a larger shift. */
-static PetscErrorCode renew_incomplete(struct equations *self, int *is_definite)
-{
-  PetscFunctionBegin;
-  if (self->method == by_multigrid) {
-    PetscCall(renew_smoother(self->solver, self->blocks, &self->incomplete, is_definite));
-  } else {
-    PetscCall(set_up_incomplete(&self->incomplete, self->solver, self->blocks, is_definite));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -276,14 +251,17 @@ static PetscErrorCode iterate(struct equations *self, double admissible, PetscSc
                              PETSC_DEFAULT, most_iterations));
   do {
     PetscInt count;
-    PetscCall(combine_solutions(&self->last, self->b, with, self->x));
+    PetscCall(combine_solutions(&self->last, self->b, with, self->x, self->rest));
+    if (!has_factor(self))
+      PetscCall(add_coarse_solution(&self->levels.coarse, self->rest, self->x));
     PetscCall(KSPSolve(self->solver, self->b, self->x));
     PetscCall(KSPGetConvergedReason(self->solver, reason));
     PetscCall(KSPGetIterationNumber(self->solver, &count));
     *iterations += count;
     is_repeated = !has_factor(self) && *reason == KSP_DIVERGED_INDEFINITE_PC
-                  && raise_shift(&self->incomplete);
-    if (is_repeated) PetscCall(renew_incomplete(self, &is_repeated));
+                  && raise_shift(&self->levels.fine);
+    if (is_repeated)
+      PetscCall(set_up_incomplete(&self->levels.fine, self->blocks, &is_repeated));
   } while (is_repeated);
   PetscFunctionReturn(0);
 }
@@ -336,7 +314,7 @@ void keyway_petsc_memory(void *handle, int *memory)
 double keyway_petsc_shift(void *handle)
 {
   const struct equations *self = handle;
-  return self->incomplete.shift;
+  return unusual_shift(&self->levels.fine);
 }
 
 double keyway_petsc_entries(void *handle)

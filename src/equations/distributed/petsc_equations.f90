@@ -8,15 +8,15 @@ module petsc_equations
   public :: finish_petsc
   public :: entries_of_petsc, memory_of_petsc, shift_of_petsc
   public :: take_petsc_patch, rows_of_petsc_patch, solve_petsc_patch, drop_petsc_patch
-  public :: by_cholesky, by_multigrid, by_blocks, by_lu, by_compressed
+  public :: by_cholesky, by_iteration, by_lu, by_compressed
   public :: is_done, is_singular, is_slow
 
   integer(c_int), parameter :: by_cholesky = 1 !< L L^T by MUMPS
-  !> Conjugate gradients, with smoothed aggregation, and with the incomplete factor of each rank
-  integer(c_int), parameter :: by_multigrid = 2, by_blocks = 3
-  integer(c_int), parameter :: by_lu = 4 !< L U by MUMPS, of a matrix that is not symmetric
+  !> Conjugate gradients with an incomplete factor and the motions of groups of nodes
+  integer(c_int), parameter :: by_iteration = 2
+  integer(c_int), parameter :: by_lu = 3 !< L U by MUMPS, of a matrix that is not symmetric
   !> Conjugate gradients with L L^T by MUMPS whose blocks have low rank
-  integer(c_int), parameter :: by_compressed = 5
+  integer(c_int), parameter :: by_compressed = 4
   integer(c_int), parameter :: is_done = 0, is_singular = 1, is_slow = 2 !< outcomes; else a failure
 
   interface

@@ -1,7 +1,7 @@
-/* METIS's nested dissection behind plain integers.
+/* METIS behind plain numbers: order of elimination, parts of graphs and of meshes.
  *
- * METIS catches SIGTERM while it works, gives up and returns METIS_ERROR. Each function below then
- * asks METIS once more. If METIS now succeeds, a signal has stopped it, and the program gets the
+ * METIS catches SIGTERM while it works, gives up and returns METIS_ERROR. Each call below is then
+ * repeated once. If METIS now succeeds, a signal has stopped it, and the program gets the
  * signal afterwards. */
 #include <metis.h>
 #include <signal.h>
@@ -35,25 +35,90 @@ int keyway_nested_dissection(int n, int *start, int *neighbour, int *weight, int
   return status == METIS_OK ? 0 : 1;
 }
 
-/* Divides elements among parts of about the same weight with few nodes on borders; part[element]
- * from 0. Elements are neighbours where they have a face in common. Returns 0 for success. */
-int keyway_divide_mesh(int num_elements, int num_nodes, int *first, int *node, int *weight,
-                       int num_parts, int *part)
+/* Divides the nodes of a graph (as above, with weights of the edges) among parts of about the same
+ * size; edges between parts have small weights. part[node] from 0. Returns 0 for success. Repeated
+ * halving: METIS_PartGraphKway scatters parts of 32 nodes. */
+int keyway_divide_graph(int num_nodes, int *start, int *neighbour, int *weight, int num_parts,
+                        int *part)
 {
-  enum { nodes_of_face = 4 };
-  idx_t options[METIS_NOPTIONS], common = nodes_of_face, cut;
-  int *part_of_node = malloc((size_t)num_nodes * sizeof *part_of_node);
+  idx_t options[METIS_NOPTIONS], constraints = 1, cut;
   int status;
-  if (!part_of_node) return 1;
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
-  status = METIS_PartMeshDual(&num_elements, &num_nodes, first, node, weight, NULL, &common,
-                              &num_parts, NULL, options, &cut, part, part_of_node);
+  status = METIS_PartGraphRecursive(&num_nodes, &constraints, start, neighbour, NULL, NULL, weight,
+                                    &num_parts, NULL, NULL, options, &cut, part);
   if (status == METIS_ERROR) {
-    status = METIS_PartMeshDual(&num_elements, &num_nodes, first, node, weight, NULL, &common,
-                                &num_parts, NULL, options, &cut, part, part_of_node);
+    status = METIS_PartGraphRecursive(&num_nodes, &constraints, start, neighbour, NULL, NULL,
+                                      weight, &num_parts, NULL, NULL, options, &cut, part);
     if (status == METIS_OK) raise(SIGTERM);
   }
-  free(part_of_node);
   return status == METIS_OK ? 0 : 1;
+}
+
+/* Elements that have a face in common. METIS allocates both lists. */
+static int find_neighbours(int num_elements, int num_nodes, int *first, int *node, int **start,
+                           int **neighbour)
+{
+  enum { nodes_of_face = 4 };
+  idx_t common = nodes_of_face, from_zero = 0;
+  int status = METIS_MeshToDual(&num_elements, &num_nodes, first, node, &common, &from_zero, start,
+                                neighbour);
+  if (status == METIS_ERROR) {
+    status = METIS_MeshToDual(&num_elements, &num_nodes, first, node, &common, &from_zero, start,
+                              neighbour);
+    if (status == METIS_OK) raise(SIGTERM);
+  }
+  return status == METIS_OK ? 0 : 1;
+}
+
+static double square_of_distance(const double *a, const double *b)
+{
+  double sum = 0;
+  for (int i = 0; i < 3; i++) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+/* A face counts as much as it couples its elements: the stiffness of a brick between two of its
+ * faces goes with 1 over the square of their distance, here over that of its farthest neighbour. */
+static void weigh_faces(int num_elements, const int *start, const int *neighbour, const double *x,
+                        double *farthest, int *weight)
+{
+  const double largest_weight = 1000;
+  for (int e = 0; e < num_elements; e++) {
+    farthest[e] = 0;
+    for (int k = start[e]; k < start[e + 1]; k++) {
+      const double square = square_of_distance(x + 3 * (size_t)e, x + 3 * (size_t)neighbour[k]);
+      if (square > farthest[e]) farthest[e] = square;
+    }
+  }
+  for (int e = 0; e < num_elements; e++) {
+    for (int k = start[e]; k < start[e + 1]; k++) {
+      const int other = neighbour[k];
+      const double square = square_of_distance(x + 3 * (size_t)e, x + 3 * (size_t)other);
+      const double far = farthest[e] > farthest[other] ? farthest[e] : farthest[other];
+      weight[k] = far < largest_weight * square ? (int)(far / square) : (int)largest_weight;
+    }
+  }
+}
+
+/* Divides elements among parts of about the same size whose borders couple little; part[element]
+ * from 0. x: centres of the elements. Returns 0 for success. */
+int keyway_divide_mesh(int num_elements, int num_nodes, int *first, int *node, const double *x,
+                       int num_parts, int *part)
+{
+  int *start = NULL, *neighbour = NULL, *weight = NULL, has_failed;
+  double *farthest = malloc((size_t)num_elements * sizeof *farthest);
+  has_failed = !farthest
+               || find_neighbours(num_elements, num_nodes, first, node, &start, &neighbour);
+  if (!has_failed) weight = malloc(((size_t)start[num_elements] + 1) * sizeof *weight);
+  has_failed = has_failed || !weight;
+  if (!has_failed) {
+    weigh_faces(num_elements, start, neighbour, x, farthest, weight);
+    has_failed = keyway_divide_graph(num_elements, start, neighbour, weight, num_parts, part);
+  }
+  METIS_Free(start);
+  METIS_Free(neighbour);
+  free(weight);
+  free(farthest);
+  return has_failed;
 }
