@@ -83,7 +83,8 @@ static double square_of_distance(const double *a, const double *b)
 static void weigh_faces(int num_elements, const int *start, const int *neighbour, const double *x,
                         double *farthest, int *weight)
 {
-  const double largest_weight = 1000;
+  const double usual = 1000, most_of_mesh = 3e8; /* METIS adds integers */
+  const double largest = num_elements * usual < most_of_mesh ? usual : most_of_mesh / num_elements;
   for (int e = 0; e < num_elements; e++) {
     farthest[e] = 0;
     for (int k = start[e]; k < start[e + 1]; k++) {
@@ -96,7 +97,7 @@ static void weigh_faces(int num_elements, const int *start, const int *neighbour
       const int other = neighbour[k];
       const double square = square_of_distance(x + 3 * (size_t)e, x + 3 * (size_t)other);
       const double far = farthest[e] > farthest[other] ? farthest[e] : farthest[other];
-      weight[k] = far < largest_weight * square ? (int)(far / square) : (int)largest_weight;
+      weight[k] = far < largest * square ? (int)(far / square) : 1 + (int)largest;
     }
   }
 }

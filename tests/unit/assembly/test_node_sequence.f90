@@ -25,7 +25,7 @@ contains
     place = [(1 + modulo(23*k, num_nodes), k=1, num_nodes)]
     model%mesh%nodes = reshape(place(reshape(model%mesh%nodes, [8*num_boxes])), [8, num_boxes])
     call order_nodes(model%mesh, sequence)
-    plane(place) = [((k + 3)/4, k=1, num_nodes)]
+    plane(place) = [([k, k, k, k], k=1, num_boxes + 1)]
     plane = plane(sequence)
     call check(log, all(abs(plane(2:) - plane(:num_nodes - 1)) <= 1), 'neighbours follow')
     call check(log, abs(plane(1) - plane(num_nodes)) == num_boxes, 'from one end to the other')

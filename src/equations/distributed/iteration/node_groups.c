@@ -4,9 +4,10 @@
 
 enum { width = 3 };
 
-/* Weight of a coupling as stiff as the diagonals; METIS takes integers. Couplings are squared: of
- * bricks of 1 : 3 the short edges count 81 times as much as the long ones. */
-static const double largest_weight = 4000;
+/* Weight of a coupling as stiff as the diagonals, and the most that all nodes may add up to: METIS
+ * takes integers. Couplings are squared: of bricks of 1 : 3 the short edges count 81 times as much
+ * as the long ones. */
+static const double largest_weight = 4000, most_of_graph = 5e8;
 
 int keyway_divide_graph(int num_nodes, int *start, int *neighbour, int *weight, int num_parts,
                         int *part);
@@ -79,6 +80,7 @@ static void add_edge(const struct graph *self, int *next, int from, int to, int 
 static PetscErrorCode fill_edges(Mat rows, struct couplings *found, const double *own, int *next,
                                  struct graph *self)
 {
+  const double largest = PetscMin(largest_weight, most_of_graph / self->nodes);
   PetscFunctionBegin;
   for (int i = 0; i < self->nodes; i++) next[i] = self->start[i];
   for (int i = 0; i < self->nodes; i++) {
@@ -86,7 +88,7 @@ static PetscErrorCode fill_edges(Mat rows, struct couplings *found, const double
     for (int k = 0; k < found->count; k++) {
       const int j = found->other[k];
       const double part = found->square[j] / PetscSqrtReal(own[i] * own[j]);
-      const int weight = 1 + (int)(largest_weight * PetscMin(part, 1));
+      const int weight = 1 + (int)(largest * PetscMin(part, 1));
       add_edge(self, next, i, j, weight);
       add_edge(self, next, j, i, weight);
       found->square[j] = 0;
