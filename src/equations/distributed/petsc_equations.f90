@@ -95,7 +95,8 @@ module petsc_equations
       integer(c_int), intent(out) :: memory(2) !< on one rank at most, on all ranks [MB]
     end subroutine memory_of_petsc
 
-    !> What the diagonal has got more, relative to it, for the incomplete factor; 0 without a shift.
+    !> What the diagonal has got more, relative to it, for the incomplete factor; 0 for the usual
+    !> hundredth.
     function shift_of_petsc(handle) result(shift) bind(c, name='keyway_petsc_shift')
       import :: c_double, c_ptr
       implicit none
