@@ -31,7 +31,8 @@ struct equations {
   Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_iteration */
   struct two_levels levels; /* by_iteration */
   KSP solver;
-  Vec b, x, rest; /* rest: of b, at the start of an iteration */
+  Vec b, x;
+  Vec rest, correction; /* of the prediction of an iteration: residual, and what x lacks */
   struct last_solutions last;
   struct matrix_patch patch;
 };
@@ -83,6 +84,7 @@ void keyway_petsc_finish(void *handle)
   VecDestroy(&self->b);
   VecDestroy(&self->x);
   VecDestroy(&self->rest);
+  VecDestroy(&self->correction);
   free(self);
 }
 
@@ -125,6 +127,7 @@ static PetscErrorCode plan(struct equations *self, const double *rigid, size_t e
   if (self->method != by_lu) PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(self->matrix, &self->x, &self->b));
   PetscCall(VecDuplicate(self->b, &self->rest));
+  PetscCall(VecDuplicate(self->x, &self->correction));
   if (self->method == by_iteration)
     PetscCall(keep_rigid_motions(&self->levels.coarse, self->rows, rigid));
   PetscCall(choose_method(self));
@@ -239,22 +242,38 @@ int keyway_petsc_factor(void *handle)
   return factor(handle, &status) ? failed : status;
 }
 
+/* Predicts x, and the part of its correction in the coarse space. The residual of x may be round-off
+ * of the forces A x: in a correction, all of its digits count. */
+static PetscErrorCode predict(struct equations *self, PetscScalar *with)
+{
+  Mat matrix;
+  PetscFunctionBegin;
+  PetscCall(combine_solutions(&self->last, self->b, with, self->x));
+  PetscCall(KSPGetOperators(self->solver, &matrix, NULL));
+  PetscCall(MatResidual(matrix, self->b, self->x, self->rest));
+  PetscCall(VecSet(self->correction, 0));
+  if (!has_factor(self))
+    PetscCall(add_coarse_solution(&self->levels.coarse, self->rest, self->correction));
+  PetscFunctionReturn(0);
+}
+
 /* Conjugate gradients, again with a larger shift where a direction shows in which the incomplete
  * factor is negative. */
 static PetscErrorCode iterate(struct equations *self, double admissible, PetscScalar *with,
                               KSPConvergedReason *reason, int *iterations)
 {
   int is_repeated;
+  PetscReal force;
   *iterations = 0;
   PetscFunctionBegin;
-  PetscCall(KSPSetTolerances(self->solver, admissible > 0 ? least_residual : tolerance, admissible,
-                             PETSC_DEFAULT, most_iterations));
+  PetscCall(VecNorm(self->b, NORM_2, &force));
+  force *= admissible > 0 ? least_residual : tolerance;
+  PetscCall(KSPSetTolerances(self->solver, 0, PetscMax(force, admissible), PETSC_DEFAULT,
+                             most_iterations));
   do {
     PetscInt count;
-    PetscCall(combine_solutions(&self->last, self->b, with, self->x, self->rest));
-    if (!has_factor(self))
-      PetscCall(add_coarse_solution(&self->levels.coarse, self->rest, self->x));
-    PetscCall(KSPSolve(self->solver, self->b, self->x));
+    PetscCall(predict(self, with));
+    PetscCall(KSPSolve(self->solver, self->rest, self->correction));
     PetscCall(KSPGetConvergedReason(self->solver, reason));
     PetscCall(KSPGetIterationNumber(self->solver, &count));
     *iterations += count;
@@ -263,6 +282,7 @@ static PetscErrorCode iterate(struct equations *self, double admissible, PetscSc
     if (is_repeated)
       PetscCall(set_up_incomplete(&self->levels.fine, self->blocks, &is_repeated));
   } while (is_repeated);
+  PetscCall(VecAXPY(self->x, 1, self->correction));
   PetscFunctionReturn(0);
 }
 

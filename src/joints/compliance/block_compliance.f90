@@ -5,6 +5,7 @@
 !> the rows of its own groups, and the couplings of all.
 module block_compliance
   use coupling_block, only: dense_block, make_block
+  use errors, only: error_type
   use kinds, only: rk, long
   use learned_response, only: response_memory
   use point_groups, only: group_list
@@ -19,6 +20,7 @@ module block_compliance
 
   !> The whole compliance as an operator, for blocks that leave too much of it out.
   type, abstract :: exact_response
+    type(error_type), allocatable :: failure !< of a product; products are zero from then on
   contains
     procedure(respond), deferred :: respond
   end type exact_response
@@ -44,7 +46,7 @@ module block_compliance
     type(response_memory) :: learned !< of what is left out
     class(exact_response), pointer :: exact => null() !< in the place of products with the blocks
   contains
-    procedure :: start, put, put_coupling, has_block, add_block, product, couple, learn
+    procedure :: start, put, put_coupling, has_block, add_block, product, couple, learn, disconnect
     procedure :: num_entries, as_dense
   end type compliance_blocks
 
@@ -182,6 +184,16 @@ contains
     call multiply_blocks(self, x, y)
     call self%learned%add_to(x, y)
   end subroutine product
+
+  !> Ends products with the operator in the place of the blocks; `error` is the failure of one, if
+  !> there is none before.
+  subroutine disconnect(self, error)
+    class(compliance_blocks), intent(inout) :: self
+    type(error_type), allocatable, intent(inout) :: error
+    if (.not. associated(self%exact)) return
+    if (allocated(self%exact%failure)) call move_alloc(self%exact%failure, error)
+    self%exact => null()
+  end subroutine disconnect
 
   !> Learns from the exact jumps y by forces x what the blocks leave out.
   subroutine learn(self, x, y)

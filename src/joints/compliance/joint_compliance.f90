@@ -1,6 +1,7 @@
 !> Compliance of the structure at the points of its joints, G = B K_0^-1 B^T, by solves.
 module joint_compliance
-  use block_compliance, only: compliance_blocks, own_size
+  use block_compliance, only: compliance_blocks, exact_response, own_size
+  use global_vectors, only: norm
   use kinds, only: rk
   use errors, only: error_type
   use joint_rows, only: num_rows
@@ -10,11 +11,42 @@ module joint_compliance
   use ranks, only: add_over_ranks
   implicit none
   private
-  public :: find_compliance, find_own_rows
+  public :: find_compliance, find_own_rows, solved_response
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
+  !> Residual of a solve by iteration for a product with G, over the forces. Springs of closed joints
+  !> are hundreds of times as stiff as the structure, whose part of G needs some digits.
+  real(rk), parameter :: residual_of_product = 1.0e-8_rk
+
+  !> G as an operator: a solve for each product.
+  type, extends(exact_response) :: solved_response
+    class(equation_solver), pointer :: factor => null() !< of K_0
+    type(jump_operator), pointer :: operator => null()
+    integer :: num_free = 0
+  contains
+    procedure :: respond
+  end type solved_response
 
 contains
+
+  !> y = G x; zero after a failure.
+  subroutine respond(self, x, y)
+    class(solved_response), intent(inout) :: self
+    real(rk), intent(in) :: x(:) !< (rows) [N]
+    real(rk), intent(out) :: y(:) !< (rows) [m]
+    real(rk) :: b(self%num_free, 1)
+    integer :: row
+    y = 0.0_rk
+    if (allocated(self%failure)) return
+    b = 0.0_rk
+    do row = 1, size(x)
+      call spread_row(self%operator, row, x(row), b(:, 1))
+    end do
+    self%factor%admissible = residual_of_product*norm(b(:, 1))
+    call self%factor%solve(b, self%failure)
+    self%factor%admissible = 0.0_rk
+    if (.not. allocated(self%failure)) call apply_rows(self%operator, b(:, 1), y)
+  end subroutine respond
 
   !> Computes G.
   subroutine find_compliance(factor, operator, num_free, compliance, error)
@@ -81,7 +113,7 @@ contains
       last = min(first + block_size - 1, size(rows))
       allocate (b(num_free, last - first + 1), source=0.0_rk)
       do k = first, last
-        call spread_row(operator, rows(k), b(:, k - first + 1))
+        call spread_row(operator, rows(k), 1.0_rk, b(:, k - first + 1))
       end do
       call factor%solve(b, error)
       if (allocated(error)) return
@@ -92,14 +124,18 @@ contains
     end do
   end subroutine find_columns
 
-  !> One row of B as a column over the free unknowns.
-  pure subroutine spread_row(operator, row, column)
+  !> Adds the forces of one row of B to a column over the free unknowns.
+  pure subroutine spread_row(operator, row, force, column)
     type(jump_operator), intent(in) :: operator
     integer, intent(in) :: row
-    real(rk), intent(inout) :: column(:) !< zero on entry
+    real(rk), intent(in) :: force !< [N]
+    real(rk), intent(inout) :: column(:) !< [N]
     integer :: k
     do k = operator%row_start(row), operator%row_start(row + 1) - 1
-      if (operator%unknown(k) <= size(column)) column(operator%unknown(k)) = operator%coefficient(k)
+      associate (unknown => operator%unknown(k))
+        if (unknown > size(column)) cycle
+        column(unknown) = column(unknown) + operator%coefficient(k)*force
+      end associate
     end do
   end subroutine spread_row
 

@@ -31,7 +31,6 @@ module jump_block
     type(jump_schur_block), pointer :: jumps => null()
     type(jump_operator), pointer :: operator => null()
     integer :: num_total = 0 !< unknowns
-    type(error_type), allocatable :: failure
   contains
     procedure :: respond
   end type schur_response

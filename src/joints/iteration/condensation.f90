@@ -14,7 +14,7 @@ module condensation
   use joint_iteration, only: joint_increment, start_iteration, excess_traction, closed_tangent
   use block_compliance, only: few_points, take_blocks
   use contact_scaling, only: find_contact_scale
-  use joint_compliance, only: find_compliance, find_own_rows
+  use joint_compliance, only: find_compliance, find_own_rows, solved_response
   use near_compliance, only: find_near_rows
   use point_groups, only: group_list, group_points
   use selected_compliance, only: select_compliance
@@ -34,10 +34,14 @@ module condensation
   type, extends(equilibrium_solver) :: condensed_equilibrium
     type(condensed_joints) :: condensed
     type(jump_schur_block) :: jumps !< saves one of the two solves of an increment
-    type(schur_response), private :: response !< G as an operator
+    !> G as an operator, by the Schur block or by solves
+    type(schur_response), private :: response
+    type(solved_response), private :: solved
     integer, private :: num_held = 0 !< prescribed unknowns
     logical, private :: takes_all_blocks = .false. !< of the next matrix
     logical, private :: uses_response = .false. !< in the place of the blocks of G
+    !> The blocks learn what they leave out, in place of Anderson's acceleration
+    logical, private :: learns = .false.
     integer, private :: num_passes = 0 !< beyond the first of a solve, in time, with these blocks
     !> (3, points) excess traction of the last solution [Pa]
     real(rk), allocatable, private :: excess(:, :)
@@ -215,14 +219,17 @@ contains
   end subroutine condense_densely
 
   !> Computes the blocks of G that were left out: joints of a static step, and joints that carry a
-  !> whole block, see each other further than neighbours.
-  subroutine complete_blocks(self, num_free, was_complete, error)
+  !> whole block, see each other further than neighbours. In motion parts of the structure are near
+  !> enough for most increments: one of the others takes products with G.
+  subroutine complete_blocks(self, num_free, is_static, was_complete, error)
     class(condensed_equilibrium), intent(inout) :: self
     integer, intent(in) :: num_free
-    logical, intent(out) :: was_complete !< or is too large
+    logical, intent(in) :: is_static
+    logical, intent(out) :: was_complete !< or stays as it is
     type(error_type), allocatable, intent(out) :: error
     was_complete = self%condensed%blocks%left_out <= smallest_coupling &
-                   .or. self%operator%num_points > most_completed
+                   .or. self%operator%num_points > most_completed &
+                   .or. (self%factor%has_patches() .and. .not. is_static)
     if (.not. was_complete) call self%take_all_blocks(num_free, error)
   end subroutine complete_blocks
 
@@ -273,14 +280,13 @@ contains
     call self%solve_from(balance, joints, old, new, x, outcome, error)
     if (allocated(error)) return
     if (.not. (outcome%has_converged .or. outcome%gives_up .or. balance%is_estimate)) then
-      call complete_blocks(self, size(balance%rhs), was_complete, error)
-      if (allocated(error) .or. (was_complete .and. .not. self%jumps%top%is_there)) return
+      call complete_blocks(self, size(balance%rhs), balance%is_static, was_complete, error)
+      if (allocated(error) .or. (was_complete .and. .not. has_response(self))) return
       iterations = outcome%iterations
       self%uses_response = was_complete
       call self%solve_from(balance, joints, old, new, x, outcome, error)
       self%uses_response = .false.
-      self%condensed%blocks%exact => null()
-      if (allocated(self%response%failure)) call move_alloc(self%response%failure, error)
+      call self%condensed%blocks%disconnect(error)
       outcome%iterations = outcome%iterations + iterations
     end if
     if (allocated(error) .or. .not. outcome%has_converged) return
@@ -295,6 +301,12 @@ contains
       outcome%iterations = outcome%iterations + iterations
     end if
   end subroutine solve_balance
+
+  !> Whether products with G are possible without its blocks.
+  logical function has_response(self)
+    class(condensed_equilibrium), intent(in) :: self
+    has_response = self%jumps%top%is_there .or. self%factor%has_patches()
+  end function has_response
 
   !> Solves again from a solution of a factor in single precision, until its residual is admissible
   !> and its jumps are those of the laws.

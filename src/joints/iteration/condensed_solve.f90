@@ -16,13 +16,15 @@ submodule(condensation) condensed_solve
   real(rk), parameter :: sure_share = 0.1_rk
   !> The same for what is left out of G: the drift is some ten times as large.
   real(rk), parameter :: small_share = 0.01_rk
+  !> Residual of the response to a change of the joint forces, over this change. The blocks learn
+  !> from the response: that to a small change needs as many digits as any other.
+  real(rk), parameter :: share_of_change = 1.0e-6_rk
 
   !> Passes of the iteration on jumps; each starts from the exact jumps at the forces of the last.
   type :: pass_history
     real(rk) :: rough = 0.0_rk !< residual of a rough equilibrium over the drift
     real(rk) :: drift(2) = 0.0_rk !< of the last pass and the one before
     logical :: has_stalled = .false.
-    logical :: learns = .false. !< what the blocks leave out, in place of Anderson's acceleration
     type(mixer) :: mixing !< Anderson's acceleration of the shift
     real(rk), allocatable :: shift(:) !< (rows) jumps by the blocks that are left out [m]
   end type pass_history
@@ -75,7 +77,7 @@ contains
         if (is_last_pass(self, passes)) exit
         call find_drift(self, balance, new, excess - last_excess, half, x, field, error)
         if (allocated(error)) return
-        if (passes%learns) call learn(self, excess - last_excess, field%response - exact)
+        if (self%learns) call learn(self, excess - last_excess, field%response - exact)
         exact = field%response
         last_excess = excess
         if (field%drift <= self%admissible_drift() .and. .not. self%condensed%is_rough) exit
@@ -94,12 +96,19 @@ contains
   end subroutine solve_from
 
   !> G as an operator takes the place of its blocks in products.
-  subroutine connect_response(self, num_total)
+  subroutine connect_response(self, num_free)
     class(condensed_equilibrium), intent(inout), target :: self
-    integer, intent(in) :: num_total !< unknowns
+    integer, intent(in) :: num_free !< unknowns
+    if (.not. self%jumps%top%is_there) then
+      self%solved%factor => self%factor
+      self%solved%operator => self%operator
+      self%solved%num_free = num_free
+      self%condensed%blocks%exact => self%solved
+      return
+    end if
     self%response%jumps => self%jumps
     self%response%operator => self%operator
-    self%response%num_total = num_total
+    self%response%num_total = num_free + self%num_held
     self%condensed%blocks%exact => self%response
   end subroutine connect_response
 
@@ -118,12 +127,13 @@ contains
     class(condensed_equilibrium), intent(inout), target :: self
     type(force_balance), intent(in) :: balance
     type(pass_history), intent(inout) :: passes
-    if (self%uses_response) call connect_response(self, size(balance%rhs) + self%num_held)
+    if (self%uses_response) call connect_response(self, size(balance%rhs))
     self%condensed%keeps_factors = .false.
     self%condensed%rough_residual = 0.0_rk
     self%condensed%rough_share = 0.0_rk
+    self%learns = .false.
     if (has_small_rest(self)) return
-    passes%learns = self%factor%has_patches() .and. .not. balance%is_static
+    self%learns = self%factor%has_patches() .and. .not. balance%is_static
     passes%rough = merge(rough_in_statics, rough_in_time, balance%is_static)
     self%condensed%rough_share = passes%rough
     allocate (passes%shift(size(self%condensed%k_ref)), source=0.0_rk)
@@ -141,7 +151,7 @@ contains
     self%condensed%rough_share = 0.0_rk
     self%condensed%rough_residual = passes%rough*field%drift
     passes%drift = [field%drift, passes%drift(1)]
-    if (passes%learns) return
+    if (self%learns) return
     change = reshape(field%response - field%jump, [size(change)])
     last = passes%shift
     call passes%mixing%advance(change, passes%shift)
@@ -250,7 +260,8 @@ contains
     real(rk) :: correction(size(x)), no_load(size(x) - self%num_held)
     if (.not. any(abs(change) > 0.0_rk)) return
     no_load = 0.0_rk
-    call respond(self, no_load, change, self%admissible, correction, error)
+    call respond(self, no_load, change, merge(share_of_change, 1.0_rk, self%learns), correction, &
+                 error)
     if (.not. allocated(error)) x = x + correction
   end subroutine add_response
 
@@ -263,7 +274,7 @@ contains
     real(rk), intent(out) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error
     if (.not. self%jumps%is_there) then
-      call respond(self, balance%rhs, excess, self%admissible, x, error)
+      call respond(self, balance%rhs, excess, 1.0_rk, x, error)
       return
     end if
     x = 0.0_rk
@@ -324,11 +335,11 @@ contains
   end subroutine end_solve
 
   !> x = K_0^-1 (rhs + weight*B^T area*excess).
-  subroutine respond(self, rhs, excess, admissible, x, error)
+  subroutine respond(self, rhs, excess, share, x, error)
     type(condensed_equilibrium), intent(inout) :: self
     real(rk), intent(in) :: rhs(:) !< (free unknowns)
     real(rk), intent(in) :: excess(:, :) !< (3, points) [Pa]
-    real(rk), intent(in) :: admissible !< norm of the residual, for a factor in single precision [N]
+    real(rk), intent(in) :: share !< most that the residual may be, over the forces
     real(rk), intent(out) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: b(:, :)
@@ -336,7 +347,7 @@ contains
     call self%operator%add_forces(self%weight*excess, x)
     b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
     call self%costs%start('solve', 'structure', 'solver')
-    call self%solve_with_factor(admissible, b, error)
+    call self%solve_with_factor(min(self%admissible, share*norm(b(:, 1))), b, error)
     call self%costs%stop()
     x = 0.0_rk
     x(:size(rhs)) = b(:, 1)

@@ -1,4 +1,4 @@
-/* A x_i = b_i holds to the tolerance of the solves: combinations need no product with A. */
+/* A x_i = b_i holds to the tolerance of the solves. */
 #include "last_solutions.h"
 
 #include <math.h>
@@ -50,19 +50,15 @@ static void find_weights(const struct last_solutions *self, const PetscScalar *w
   }
 }
 
-PetscErrorCode combine_solutions(struct last_solutions *self, Vec b, PetscScalar *with, Vec x,
-                                 Vec rest)
+PetscErrorCode combine_solutions(struct last_solutions *self, Vec b, PetscScalar *with, Vec x)
 {
   PetscScalar weight[most_kept];
   PetscFunctionBegin;
   PetscCall(VecSet(x, 0));
-  PetscCall(VecCopy(b, rest));
   if (self->count == 0) PetscFunctionReturn(0);
   PetscCall(VecMDot(b, self->count, self->b, with));
   find_weights(self, with, weight);
   PetscCall(VecMAXPY(x, self->count, weight, self->x));
-  for (int i = 0; i < self->count; i++) weight[i] = -weight[i];
-  PetscCall(VecMAXPY(rest, self->count, weight, self->b));
   PetscFunctionReturn(0);
 }
 

@@ -14,9 +14,8 @@ struct last_solutions {
 /* Forgets the solutions, with a new matrix. */
 PetscErrorCode forget_solutions(struct last_solutions *self);
 
-/* x = sum c_i x_i, c from the least squares of rest = b - sum c_i b_i. `with` returns b . b_i. */
-PetscErrorCode combine_solutions(struct last_solutions *self, Vec b, PetscScalar *with, Vec x,
-                                 Vec rest);
+/* x = sum c_i x_i, c from the least squares of b - sum c_i b_i. `with` returns b . b_i. */
+PetscErrorCode combine_solutions(struct last_solutions *self, Vec b, PetscScalar *with, Vec x);
 
 /* Keeps a solution in place of the oldest one. */
 PetscErrorCode keep_solution(struct last_solutions *self, Vec b, const PetscScalar *with, Vec x);

@@ -1,7 +1,7 @@
 /* A-DEF2 of J. M. Tang, R. Nabben, C. Vuik, Y. A. Erlangga, Journal of Scientific Computing 39,
  * 2009, 340-370: P^T M^-1 + Q, with M the incomplete factor and P^T = I - Q A. It is symmetric for
- * residuals without a part in the coarse space: the iteration starts from x + Q (b - A x), and the
- * residual stays so but for round-off, which Q r takes away. */
+ * residuals r without a part in the coarse space: the iteration for a correction d of x, A d = r,
+ * starts from d = Q r, and the residual stays so but for round-off, which Q takes away. */
 #include "two_levels.h"
 
 static PetscErrorCode apply_two_levels(PC pc, Vec r, Vec z)
