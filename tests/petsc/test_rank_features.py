@@ -7,6 +7,7 @@ from pathlib import Path
 
 import h5py
 import make_dam
+import make_jinping
 import numpy as np
 import pytest
 from harness import ROOT
@@ -236,6 +237,43 @@ def test_small_increment_by_conjugate_gradients(keyway, on_ranks):
     expected, found = plain.csv("node_CREST"), divided.csv("node_CREST")
     for name in ("U1", "U2", "U3"):
         assert found[name] == pytest.approx(expected[name], abs=1e-4 * abs(expected[name]).max())
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("residual", ["1e-6", "1e-9"])
+def test_slender_blocks_by_conjugate_gradients(keyway, on_ranks, residual, ranks):
+    """Forces of a stiff joint that are 1e4 times the load: the residual that remains is round-off
+    of the forces, and each solve is one for a correction. 1e-5 of the largest value: the tolerance
+    of *CONTROLS, INCREMENT, 1e-6, on each of two solutions.
+    """
+    deck = Path(__file__).with_name("slender_blocks.inp").read_text()
+    deck = deck.replace("RESIDUAL=1e-6", f"RESIDUAL={residual}")
+    plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "ITERATIVE")
+    assert plain.csv("joint_GAP")["slip2"].max() > 0.05
+    for name, key in (("node_LOADED", "U1"), ("node_LOADED", "U3"), ("joint_GAP", "slip2")):
+        expected, found = plain.csv(name)[key], divided.csv(name)[key]
+        assert found == pytest.approx(expected, abs=1e-5 * abs(expected).max())
+
+
+@pytest.mark.full
+def test_cracks_and_sliding_by_conjugate_gradients(keyway, on_ranks, tmp_path):
+    """Jinping with the law of table 1: joints slide by 14 mm and concrete cracks. The memory of
+    joints takes all of its 64 changes, some of them tiny. 1e-3 of the largest displacement and
+    slip: 30 increments on cracks within RESIDUAL=1.2e-5, which the tool writes.
+    """
+    path = tmp_path / "jinping.inp"
+    assert make_jinping.main([str(path), "--duration", "0.3", "--increment", "0.01"]) == 0
+    before, modes = path.read_text().split("*STEP, NAME=MODES\n")
+    path.write_text(before + modes.split("*END STEP\n", maxsplit=1)[1])
+    plain, divided = keyway(path, "-j", "2"), on_ranks(2)(path, "--solver", "ITERATIVE")
+    assert divided.json["steps"][-1]["cutbacks"] == plain.json["steps"][-1]["cutbacks"] == 0
+    old, new = (run.json["joints"]["JOINT3"]["slip"]["anywhere"] for run in (plain, divided))
+    assert new["value"] == pytest.approx(old["value"], rel=1e-3)
+    assert old["value"] > 0.014
+    assert plain.json["damage"]["DAMAGET"]["value"] > 0.9
+    for key in ("U2", "U3"):
+        expected, found = (run.csv("node_CROWN_CREST")[key] for run in (plain, divided))
+        assert found == pytest.approx(expected, abs=1e-3 * abs(expected).max())
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -20,9 +20,9 @@ enum { rows_of_node = 3, most_iterations = 5000 };
  * value need less; forces that nearly cancel need this. */
 static const double tolerance = 1e-10;
 
-/* The same where the caller admits a residual: what round-off leaves of the forces. In motion the
- * right-hand side can be a hundred times the forces that the residual is compared with. */
-static const double least_residual = 1e-12;
+/* The same where the caller admits a residual. The right-hand side, of stiff joints or of inertia,
+ * can be many times the forces that the residual is compared with. */
+static const double least_residual = 1e-14;
 
 struct equations {
   int method;

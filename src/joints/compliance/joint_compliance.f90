@@ -14,8 +14,8 @@ module joint_compliance
   public :: find_compliance, find_own_rows, solved_response
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
-  !> Residual of a solve by iteration for a product with G, over the forces. Springs of closed joints
-  !> are hundreds of times as stiff as the structure, whose part of G needs some digits.
+  !> Residual of a solve by iteration for a product with G, over the forces. Springs of closed
+  !> joints are hundreds of times as stiff as the structure, whose part of G needs some digits.
   real(rk), parameter :: residual_of_product = 1.0e-8_rk
 
   !> G as an operator: a solve for each product.

@@ -46,7 +46,7 @@ contains
     type(joint_increment) :: now
     type(joint_field) :: start
     type(pass_history) :: passes
-    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess, exact
+    real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
     real(rk), allocatable :: half(:)
     integer :: pass, iterations
     iterations = 0
@@ -58,7 +58,6 @@ contains
       if (allocated(error)) return
       call operator%jumps(x, field%response)
       field%response = field%response + balance%offset
-      exact = field%response
       call start_passes(self, balance, passes)
       do pass = 1, most_passes
         call self%costs%start('iterate', 'joints', 'joint')
@@ -77,8 +76,6 @@ contains
         if (is_last_pass(self, passes)) exit
         call find_drift(self, balance, new, excess - last_excess, half, x, field, error)
         if (allocated(error)) return
-        if (self%learns) call learn(self, excess - last_excess, field%response - exact)
-        exact = field%response
         last_excess = excess
         if (field%drift <= self%admissible_drift() .and. .not. self%condensed%is_rough) exit
         passes%has_stalled = has_stalled(pass, passes, field)
@@ -157,16 +154,6 @@ contains
     call passes%mixing%advance(change, passes%shift)
     field%response = field%response + reshape(passes%shift - last - change, shape(field%response))
   end subroutine start_pass
-
-  !> Learns from the exact jumps by a change of the joint forces what the blocks leave out.
-  subroutine learn(self, change, jump)
-    class(condensed_equilibrium), intent(inout) :: self
-    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
-    real(rk), intent(in) :: jump(:, :) !< (3, points) [m]
-    real(rk) :: force(3, size(change, 2))
-    force = self%weight*change*spread(self%operator%area, 1, 3)
-    call self%condensed%blocks%learn(reshape(force, [size(force)]), reshape(jump, [size(jump)]))
-  end subroutine learn
 
   !> Whether no drift is left to be expected. The solution is checked for a drift in any case.
   logical function is_last_pass(self, passes)
@@ -262,8 +249,22 @@ contains
     no_load = 0.0_rk
     call respond(self, no_load, change, merge(share_of_change, 1.0_rk, self%learns), correction, &
                  error)
-    if (.not. allocated(error)) x = x + correction
+    if (allocated(error)) return
+    x = x + correction
+    if (self%learns) call learn(self, change, correction)
   end subroutine add_response
+
+  !> The blocks learn what they leave out of the response to a change. Jumps of the response alone
+  !> have more digits than the difference of two solutions.
+  subroutine learn(self, change, response)
+    class(condensed_equilibrium), intent(inout) :: self
+    real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
+    real(rk), intent(in) :: response(:) !< (all unknowns)
+    real(rk), dimension(3, size(change, 2)) :: force, jump
+    force = self%weight*change*spread(self%operator%area, 1, 3)
+    call self%operator%jumps(response, jump)
+    call self%condensed%blocks%learn(reshape(force, [size(force)]), reshape(jump, [size(jump)]))
+  end subroutine learn
 
   !> Response to the guess: forward substitution and jumps, or all unknowns.
   subroutine begin_solve(self, balance, excess, half, x, error)
