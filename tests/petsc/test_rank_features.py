@@ -249,7 +249,7 @@ def test_slender_blocks_by_conjugate_gradients(keyway, on_ranks, residual, ranks
     deck = Path(__file__).with_name("slender_blocks.inp").read_text()
     deck = deck.replace("RESIDUAL=1e-6", f"RESIDUAL={residual}")
     plain, divided = keyway(deck, "-j", "1"), on_ranks(ranks)(deck, "--solver", "ITERATIVE")
-    assert plain.csv("joint_GAP")["slip2"].max() > 0.05
+    assert abs(plain.csv("joint_GAP")["slip2"]).max() > 0.05
     for name, key in (("node_LOADED", "U1"), ("node_LOADED", "U3"), ("joint_GAP", "slip2")):
         expected, found = plain.csv(name)[key], divided.csv(name)[key]
         assert found == pytest.approx(expected, abs=1e-5 * abs(expected).max())
