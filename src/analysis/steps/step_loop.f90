@@ -184,7 +184,7 @@ contains
         if (allocated(error)) return
       end if
       if (now%matrix%has_all_blocks) then
-        call solids%solver%take_all_blocks(method%system%matrix%num_free, error)
+        call solids%solver%take_all_blocks(error)
       end if
     end associate
   end subroutine restore_matrix

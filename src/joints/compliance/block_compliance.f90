@@ -46,7 +46,7 @@ module block_compliance
     type(response_memory) :: learned !< of what is left out
     class(exact_response), pointer :: exact => null() !< in the place of products with the blocks
   contains
-    procedure :: start, put, put_coupling, has_block, add_block, product, couple, learn, disconnect
+    procedure :: start, put, put_coupling, has_block, add_block, product, couple, learn, has_more
     procedure :: num_entries, as_dense
   end type compliance_blocks
 
@@ -185,15 +185,11 @@ contains
     call self%learned%add_to(x, y)
   end subroutine product
 
-  !> Ends products with the operator in the place of the blocks; `error` is the failure of one, if
-  !> there is none before.
-  subroutine disconnect(self, error)
-    class(compliance_blocks), intent(inout) :: self
-    type(error_type), allocatable, intent(inout) :: error
-    if (.not. associated(self%exact)) return
-    if (allocated(self%exact%failure)) call move_alloc(self%exact%failure, error)
-    self%exact => null()
-  end subroutine disconnect
+  !> Whether products contain more than the blocks.
+  pure logical function has_more(self)
+    class(compliance_blocks), intent(in) :: self
+    has_more = associated(self%exact) .or. self%learned%num_kept > 0
+  end function has_more
 
   !> Learns from the exact jumps y by forces x what the blocks leave out.
   subroutine learn(self, x, y)

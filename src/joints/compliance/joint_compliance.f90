@@ -1,21 +1,24 @@
 !> Compliance of the structure at the points of its joints, G = B K_0^-1 B^T, by solves.
 module joint_compliance
-  use block_compliance, only: compliance_blocks, exact_response, own_size
+  use block_compliance, only: compliance_blocks, exact_response, few_points, own_size, take_blocks
+  use blas_threads, only: use_many_threads, use_one_thread
   use global_vectors, only: norm
   use kinds, only: rk
   use errors, only: error_type
   use joint_rows, only: num_rows
+  use jump_block, only: jump_schur_block, schur_compliance
   use linear_solver, only: equation_solver
   use joint_operator, only: jump_operator
   use point_groups, only: group_list
   use ranks, only: add_over_ranks
   implicit none
   private
-  public :: find_compliance, find_own_rows, solved_response
+  public :: find_all_blocks, find_compliance, solved_response
 
   integer, parameter :: block_size = 48 !< right-hand sides solved at once
   !> Residual of a solve by iteration for a product with G, over the forces. Springs of closed
-  !> joints are hundreds of times as stiff as the structure, whose part of G needs some digits.
+  !> joints are hundreds of times as stiff as the structure: what the structure adds to their
+  !> compliance needs some digits, too.
   real(rk), parameter :: residual_of_product = 1.0e-8_rk
 
   !> G as an operator: a solve for each product.
@@ -47,6 +50,34 @@ contains
     self%factor%admissible = 0.0_rk
     if (.not. allocated(self%failure)) call apply_rows(self%operator, b(:, 1), y)
   end subroutine respond
+
+  !> Computes all of G, and keeps the blocks that matter.
+  subroutine find_all_blocks(factor, jumps, operator, spring, groups, smallest, blocks, error)
+    class(equation_solver), intent(inout) :: factor !< of K_0
+    type(jump_schur_block), intent(in) :: jumps
+    type(jump_operator), intent(in) :: operator
+    real(rk), intent(in) :: spring(:) !< (rows) compliance of the joints' own springs [m/N]
+    type(group_list), intent(in) :: groups
+    real(rk), intent(in) :: smallest !< coupling of a block that is kept
+    type(compliance_blocks), intent(inout) :: blocks
+    type(error_type), allocatable, intent(out) :: error
+    real(rk), allocatable :: dense(:, :)
+    integer, allocatable :: place(:) ! of each row in `dense`; not allocated: all in order
+    integer :: levels
+    if (groups%is_divided()) then
+      call find_own_rows(factor, operator, jumps%num_free, spring, groups, blocks, error)
+      return
+    end if
+    if (jumps%is_there .and. .not. jumps%top%is_there) then
+      if (operator%num_points > few_points) call use_many_threads(levels)
+      call schur_compliance(jumps, operator, dense, place)
+      if (operator%num_points > few_points) call use_one_thread(levels)
+    else
+      call find_compliance(factor, operator, jumps%num_free, dense, error)
+      if (allocated(error)) return
+    end if
+    call take_blocks(dense, spring, groups, smallest, blocks, place)
+  end subroutine find_all_blocks
 
   !> Computes G.
   subroutine find_compliance(factor, operator, num_free, compliance, error)

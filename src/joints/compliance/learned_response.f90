@@ -4,20 +4,21 @@
 !> blocks leave out. Changes of the forces in an increment resemble those of the increments before.
 !> The last changes are kept, as columns of unit length of F, with the jumps that are left out of
 !> their responses, J = E F. Then E x is about J a, with the a that makes |x - F a|^2 + s |a|^2
-!> least (A. N. Tikhonov). The share s limits a, and thus what errors of J do: without it they would
-!> grow from change to change, because the changes are nearly dependent.
+!> least (regularisation of A. N. Tikhonov). Changes are nearly dependent. The share s limits a, so
+!> that errors of J do not grow from change to change.
 module learned_response
-  use dense_products, only: times_vector, transposed_times, transposed_times_vector
-  use errors, only: error_type
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use dense_products, only: times_vector, transposed_times_vector
+  use dense_factor, only: factorise_dense, lu_factor, solve_factored
   use global_vectors, only: length
   use kinds, only: rk
-  use symmetric_modes, only: find_modes
   implicit none
   private
   public :: response_memory, most_kept
 
   integer, parameter :: most_kept = 64 !< changes of the forces
-  !> s. Solves leave 1e-8 of the forces, of which the blocks leave out some 1e-5 on stiff springs.
+  !> s, the square of the error of J: solves leave 1e-8 of the forces, and the jumps that the blocks
+  !> leave out are some 1e-5 of those of stiff springs.
   real(rk), parameter :: share_of_length = 1.0e-6_rk
 
   type :: response_memory
@@ -25,7 +26,8 @@ module learned_response
     integer, private :: next = 1 !< the place that the next change takes
     real(rk), allocatable, private :: force(:, :) !< (rows, most_kept) F [-]
     real(rk), allocatable, private :: jump(:, :) !< (rows, most_kept) J [m/N]
-    real(rk), allocatable, private :: inverse(:, :) !< (num_kept, num_kept) (F^T F + s I)^-1
+    real(rk), private :: product(most_kept, most_kept) = 0.0_rk !< F^T F
+    type(lu_factor), private :: regular !< of F^T F + s I
   contains
     procedure :: learn, add_to, forget
   end type response_memory
@@ -46,50 +48,43 @@ contains
     class(response_memory), intent(inout) :: self
     real(rk), intent(in) :: force(:) !< (rows) [N]
     real(rk), intent(in) :: jump(:) !< (rows) [m]
+    real(rk), allocatable :: regular(:, :)
     real(rk) :: size_of_force
+    integer :: k
     size_of_force = length(force)
-    if (.not. size_of_force > 0.0_rk) return
+    if (.not. (size_of_force > 0.0_rk .and. ieee_is_finite(length(jump)))) return
     if (.not. allocated(self%force)) then
       allocate (self%force(size(force), most_kept), source=0.0_rk)
       allocate (self%jump(size(force), most_kept), source=0.0_rk)
     end if
-    self%force(:, self%next) = force/size_of_force
-    self%jump(:, self%next) = jump/size_of_force
-    self%num_kept = min(self%num_kept + 1, most_kept)
-    self%next = 1 + modulo(self%next, most_kept)
-    call invert_products(self)
-  end subroutine learn
-
-  !> (F^T F + s I)^-1 by the modes of F^T F.
-  subroutine invert_products(self)
-    type(response_memory), intent(inout) :: self
-    real(rk), allocatable :: values(:), modes(:, :), scaled(:, :)
-    type(error_type), allocatable :: error
-    integer :: k
-    associate (force => self%force(:, :self%num_kept))
-      call find_modes(transposed_times(force, force), values, modes, error)
+    associate (now => self%next)
+      self%force(:, now) = force/size_of_force
+      self%jump(:, now) = jump/size_of_force
+      self%num_kept = min(self%num_kept + 1, most_kept)
+      self%product(:, now) = transposed_times_vector(self%force, self%force(:, now))
+      self%product(now, :) = self%product(:, now)
     end associate
-    if (allocated(error)) then
-      call self%forget()
-      return
-    end if
-    allocate (scaled, source=modes)
-    do k = 1, size(values)
-      scaled(:, k) = modes(:, k)/(max(values(k), 0.0_rk) + share_of_length)
-    end do
-    self%inverse = matmul(scaled, transpose(modes))
-  end subroutine invert_products
+    self%next = 1 + modulo(self%next, most_kept)
+    associate (n => self%num_kept)
+      regular = self%product(:n, :n)
+      do k = 1, n
+        regular(k, k) = regular(k, k) + share_of_length
+      end do
+    end associate
+    call factorise_dense(regular, self%regular)
+  end subroutine learn
 
   !> y = y + E x.
   subroutine add_to(self, x, y)
     class(response_memory), intent(in) :: self
     real(rk), intent(in) :: x(:) !< (rows) [N]
     real(rk), intent(inout) :: y(:) !< (rows) [m]
-    real(rk) :: part(self%num_kept)
+    real(rk) :: part(self%num_kept, 1)
     if (self%num_kept == 0) return
     associate (force => self%force(:, :self%num_kept), jump => self%jump(:, :self%num_kept))
-      part = matmul(self%inverse, transposed_times_vector(force, x))
-      y = y + times_vector(jump, part)
+      part(:, 1) = transposed_times_vector(force, x)
+      call solve_factored(self%regular, part)
+      y = y + times_vector(jump, part(:, 1))
     end associate
   end subroutine add_to
 end module learned_response

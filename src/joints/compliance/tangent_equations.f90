@@ -116,7 +116,7 @@ contains
     real(rk), intent(out) :: rest(:) !< (rows) [N]
     real(rk) :: b(size(response))
     b = apply_change(self%change, response)
-    if (blocks%groups%num_groups == 1) then
+    if (blocks%groups%num_groups == 1 .and. .not. blocks%has_more()) then
       call self%precondition(blocks, [.true.], b)
       call blocks%product(b, correction)
       correction = response + correction

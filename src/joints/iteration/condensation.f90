@@ -12,16 +12,15 @@ module condensation
   use joint_operator, only: jump_operator, joint_springs
   use joint_forces, only: joint_field, reference_stiffness, gather_jumps, gather_tractions
   use joint_iteration, only: joint_increment, start_iteration, excess_traction, closed_tangent
-  use block_compliance, only: few_points, take_blocks
   use contact_scaling, only: find_contact_scale
-  use joint_compliance, only: find_compliance, find_own_rows, solved_response
+  use joint_compliance, only: find_all_blocks, solved_response
   use near_compliance, only: find_near_rows
   use point_groups, only: group_list, group_points
   use selected_compliance, only: select_compliance
   use matrix_condition, only: estimate_condition
   use solver_low_rank, only: add_low_rank
   use blas_threads, only: use_many_threads, use_one_thread
-  use jump_block, only: jump_schur_block, schur_response, extract_schur_block, schur_compliance
+  use jump_block, only: jump_schur_block, schur_response, extract_schur_block
   use joint_problem, only: saved_operator, saved_problem, save_problem, free_path
   use newton_condensed, only: condensed_joints, closed_response, iterate_on_jumps, linearise_again
   use tangent_equations, only: joint_tangent
@@ -151,15 +150,16 @@ contains
         if (allocated(error)) return
       end if
       if (missing > 0) then
-        call condense_densely(self, matrix%num_free, spring, groups, &
-                              merge(smallest_coupling, 0.0_rk, self%jumps%is_there), error)
+        call find_all_blocks(self%factor, self%jumps, operator, spring, groups, &
+                             merge(smallest_coupling, 0.0_rk, self%jumps%is_there), &
+                             condensed%blocks, error)
       end if
       if (allocated(error)) return
     end associate
     call start_from_blocks(self)
     self%num_passes = 0
     self%has_all_blocks = .false.
-    if (self%takes_all_blocks) call self%take_all_blocks(matrix%num_free, error)
+    if (self%takes_all_blocks) call self%take_all_blocks(error)
     self%takes_all_blocks = .false.
   end subroutine condense
 
@@ -176,79 +176,35 @@ contains
 
   !> Computes the blocks of G that were left out. Own blocks change: in their last digits, or all of
   !> them where they were those of a part of the structure. Factors with the old ones are forgotten.
-  subroutine complete(self, num_free, smallest, error)
+  subroutine complete(self, smallest, error)
     class(condensed_equilibrium), intent(inout) :: self
-    integer, intent(in) :: num_free
     real(rk), intent(in) :: smallest !< coupling of a block that is kept
     type(error_type), allocatable, intent(out) :: error
     type(group_list) :: groups
     type(joint_tangent) :: no_tangent
     groups = self%condensed%blocks%groups
-    call condense_densely(self, num_free, joint_springs(self%operator, self%condensed%k_ref, &
-                                                        self%weight), groups, smallest, error)
+    call find_all_blocks(self%factor, self%jumps, self%operator, &
+                         joint_springs(self%operator, self%condensed%k_ref, self%weight), groups, &
+                         smallest, self%condensed%blocks, error)
     if (allocated(error)) return
     self%condensed%tangent = no_tangent
     if (self%factor%has_patches()) call start_from_blocks(self)
   end subroutine complete
 
-  !> Computes all of G, and keeps the blocks that matter.
-  subroutine condense_densely(self, num_free, spring, groups, smallest, error)
-    class(condensed_equilibrium), intent(inout) :: self
-    integer, intent(in) :: num_free
-    real(rk), intent(in) :: spring(:) !< (rows) [m/N]
-    type(group_list), intent(in) :: groups
-    real(rk), intent(in) :: smallest !< coupling of a block that is kept
-    type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: dense(:, :)
-    integer, allocatable :: place(:) ! of each row in `dense`; not allocated: all in order
-    integer :: levels
-    if (groups%is_divided()) then
-      call find_own_rows(self%factor, self%operator, num_free, spring, groups, &
-                         self%condensed%blocks, error)
-      return
-    end if
-    if (self%jumps%is_there .and. .not. self%jumps%top%is_there) then
-      if (self%operator%num_points > few_points) call use_many_threads(levels)
-      call schur_compliance(self%jumps, self%operator, dense, place)
-      if (self%operator%num_points > few_points) call use_one_thread(levels)
-    else
-      call find_compliance(self%factor, self%operator, num_free, dense, error)
-      if (allocated(error)) return
-    end if
-    call take_blocks(dense, spring, groups, smallest, self%condensed%blocks, place)
-  end subroutine condense_densely
-
-  !> Computes the blocks of G that were left out: joints of a static step, and joints that carry a
-  !> whole block, see each other further than neighbours. In motion parts of the structure are near
-  !> enough for most increments: one of the others takes products with G.
-  subroutine complete_blocks(self, num_free, is_static, was_complete, error)
-    class(condensed_equilibrium), intent(inout) :: self
-    integer, intent(in) :: num_free
-    logical, intent(in) :: is_static
-    logical, intent(out) :: was_complete !< or stays as it is
-    type(error_type), allocatable, intent(out) :: error
-    was_complete = self%condensed%blocks%left_out <= smallest_coupling &
-                   .or. self%operator%num_points > most_completed &
-                   .or. (self%factor%has_patches() .and. .not. is_static)
-    if (.not. was_complete) call self%take_all_blocks(num_free, error)
-  end subroutine complete_blocks
-
   !> Computes all blocks, at once or with the first matrix. The state remembers it: a continued run
   !> takes the same ones.
-  subroutine take_all_blocks(self, num_free, error)
+  subroutine take_all_blocks(self, error)
     class(condensed_equilibrium), intent(inout) :: self
-    integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
     self%takes_all_blocks = .not. allocated(self%condensed%k_ref)
     if (self%takes_all_blocks) return
-    call complete(self, num_free, 0.0_rk, error)
+    call complete(self, 0.0_rk, error)
     self%has_all_blocks = .not. allocated(error)
   end subroutine take_all_blocks
 
   !> Computes the blocks that were left out where many passes have made up for them.
-  subroutine replace_passes(self, num_free, error)
+  subroutine replace_passes(self, error)
     class(condensed_equilibrium), intent(inout) :: self
-    integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
     if (self%num_passes <= num_rows(self%operator%num_points) &
         /merge(1, columns_of_a_pass, self%factor%has_patches()) &
@@ -256,7 +212,7 @@ contains
         .or. self%operator%num_points > most_completed .or. self%exact%is_rounded()) return
     self%num_passes = -huge(1)
     call self%costs%start('condense', 'joints', 'joint')
-    call complete(self, num_free, smallest_coupling, error)
+    call complete(self, smallest_coupling, error)
     call self%costs%stop()
   end subroutine replace_passes
 
@@ -275,22 +231,16 @@ contains
     logical :: was_complete
     self%admissible = self%admissible_residual(balance)
     if (allocated(self%base)) deallocate (self%base, self%base_force)
-    call replace_passes(self, size(balance%rhs), error)
+    call replace_passes(self, error)
     if (allocated(error)) return
     call self%solve_from(balance, joints, old, new, x, outcome, error)
     if (allocated(error)) return
     if (.not. (outcome%has_converged .or. outcome%gives_up .or. balance%is_estimate)) then
-      call complete_blocks(self, size(balance%rhs), balance%is_static, was_complete, error)
-      if (allocated(error) .or. (was_complete .and. .not. has_response(self))) return
-      iterations = outcome%iterations
-      self%uses_response = was_complete
-      call self%solve_from(balance, joints, old, new, x, outcome, error)
-      self%uses_response = .false.
-      call self%condensed%blocks%disconnect(error)
-      outcome%iterations = outcome%iterations + iterations
+      call solve_again(self, balance, joints, old, new, x, outcome, error)
     end if
-    if (allocated(error) .or. .not. outcome%has_converged) return
-    if (self%exact%is_rounded()) then
+    if (allocated(error) .or. .not. outcome%has_converged) then
+      continue
+    else if (self%exact%is_rounded()) then
       call self%refine(balance, joints, old, new, x, outcome, error)
     else if (self%solution_drift(balance, new, x) > self%admissible_drift()) then
       nearer = balance
@@ -300,13 +250,51 @@ contains
       call self%solve_from(nearer, joints, old, new, x, outcome, error)
       outcome%iterations = outcome%iterations + iterations
     end if
+    call end_products(self, error)
   end subroutine solve_balance
 
-  !> Whether products with G are possible without its blocks.
-  logical function has_response(self)
-    class(condensed_equilibrium), intent(in) :: self
-    has_response = self%jumps%top%is_there .or. self%factor%has_patches()
-  end function has_response
+  !> Solves with all blocks of G, or with products with G in their place, where blocks are left out:
+  !> joints of a static step, and joints that carry a whole block, see each other further than
+  !> neighbours. In motion few increments need it, and products take less time than all blocks.
+  subroutine solve_again(self, balance, joints, old, new, x, outcome, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(force_balance), intent(in) :: balance
+    type(dam_joint), intent(in) :: joints(:)
+    type(joint_state), intent(in) :: old(:)
+    type(joint_state), intent(inout) :: new(:)
+    real(rk), intent(inout) :: x(:)
+    type(balance_outcome), intent(inout) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    integer :: iterations
+    logical :: are_left_out, are_many
+    are_left_out = self%condensed%blocks%left_out > smallest_coupling
+    are_many = self%operator%num_points > most_completed
+    if (self%jumps%top%is_there) then
+      self%uses_response = are_many .or. .not. are_left_out
+    else
+      self%uses_response = are_left_out .and. (are_many .or. .not. balance%is_static) .and. &
+                           self%factor%has_patches() .and. .not. self%exact%is_rounded()
+    end if
+    if (.not. self%uses_response) then
+      if (are_many .or. .not. are_left_out) return
+      call self%take_all_blocks(error)
+      if (allocated(error)) return
+    end if
+    iterations = outcome%iterations
+    call self%solve_from(balance, joints, old, new, x, outcome, error)
+    outcome%iterations = outcome%iterations + iterations
+  end subroutine solve_again
+
+  !> Ends products with G in the place of the blocks; `error` is the failure of one.
+  subroutine end_products(self, error)
+    class(condensed_equilibrium), intent(inout) :: self
+    type(error_type), allocatable, intent(inout) :: error
+    if (.not. self%uses_response) return
+    self%uses_response = .false.
+    self%condensed%blocks%exact => null()
+    if (.not. allocated(error)) call move_alloc(self%response%failure, error)
+    if (.not. allocated(error)) call move_alloc(self%solved%failure, error)
+  end subroutine end_products
 
   !> Solves again from a solution of a factor in single precision, until its residual is admissible
   !> and its jumps are those of the laws.

@@ -16,8 +16,9 @@ submodule(condensation) condensed_solve
   real(rk), parameter :: sure_share = 0.1_rk
   !> The same for what is left out of G: the drift is some ten times as large.
   real(rk), parameter :: small_share = 0.01_rk
-  !> Residual of the response to a change of the joint forces, over this change. The blocks learn
-  !> from the response: that to a small change needs as many digits as any other.
+  !> Admissible residual of the response to a change of the joint forces, over this change. The
+  !> blocks learn from the response: that to a small change needs as many digits as any other. A
+  !> solve by iteration leaves a hundredth of an admissible residual.
   real(rk), parameter :: share_of_change = 1.0e-6_rk
 
   !> Passes of the iteration on jumps; each starts from the exact jumps at the forces of the last.
@@ -244,11 +245,12 @@ contains
     real(rk), intent(in) :: change(:, :) !< (3, points) of the excess traction [Pa]
     real(rk), intent(inout) :: x(:) !< (all unknowns)
     type(error_type), allocatable, intent(out) :: error
-    real(rk) :: correction(size(x)), no_load(size(x) - self%num_held)
+    real(rk) :: correction(size(x)), no_load(size(x) - self%num_held), share
     if (.not. any(abs(change) > 0.0_rk)) return
     no_load = 0.0_rk
-    call respond(self, no_load, change, merge(share_of_change, 1.0_rk, self%learns), correction, &
-                 error)
+    share = 1.0_rk
+    if (self%learns .and. .not. self%exact%is_rounded()) share = share_of_change
+    call respond(self, no_load, change, share, correction, error)
     if (allocated(error)) return
     x = x + correction
     if (self%learns) call learn(self, change, correction)

@@ -219,9 +219,8 @@ contains
   end subroutine solve_with_factor
 
   !> Computes the blocks of the compliance of joints that are left out, in solvers that leave any.
-  subroutine take_no_blocks(self, num_free, error)
+  subroutine take_no_blocks(self, error)
     class(equilibrium_solver), intent(inout) :: self
-    integer, intent(in) :: num_free
     type(error_type), allocatable, intent(out) :: error
   end subroutine take_no_blocks
 

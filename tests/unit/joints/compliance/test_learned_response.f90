@@ -78,7 +78,7 @@ contains
     call random_number(x)
     x = x - 0.5_rk
     call check(log, norm2(found(x)) < 0.5_rk*largest*norm2(x), &
-               'errors are amplified by 1/(2 sqrt(s)) at most')
+               'errors of responses stay smaller than responses')
     call check_close(log, error_of(force(:, 1)), 0.0_rk, 5.0e-3_rk, 'error of responses')
   end subroutine take_nearly_dependent_forces
 
