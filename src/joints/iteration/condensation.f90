@@ -228,7 +228,6 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(force_balance) :: nearer
     integer :: iterations
-    logical :: was_complete
     self%admissible = self%admissible_residual(balance)
     if (allocated(self%base)) deallocate (self%base, self%base_force)
     call replace_passes(self, error)
