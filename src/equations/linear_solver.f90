@@ -18,7 +18,7 @@ module linear_solver
     procedure(analyse), deferred :: analyse
     procedure(factorise), deferred :: factorise
     procedure(solve), deferred :: solve
-    procedure :: take_schur_block, take_top
+    procedure :: solve_within, take_schur_block, take_top
     procedure :: forward_substitute => refuse_half_solve
     procedure :: backward_substitute => refuse_half_solve
     procedure :: choose_active => activate_all
@@ -69,6 +69,17 @@ module linear_solver
   end interface
 
 contains
+
+  !> Solves for each column of `b`, in place; an iteration may leave a residual.
+  subroutine solve_within(self, admissible, b, error)
+    class(equation_solver), intent(inout) :: self
+    real(rk), intent(in) :: admissible !< norm of the residual; 0: round-off of the forces [N]
+    real(rk), intent(inout) :: b(:, :) !< (free unknowns, right-hand sides)
+    type(error_type), allocatable, intent(out) :: error
+    self%admissible = admissible
+    call self%solve(b, error)
+    self%admissible = 0.0_rk
+  end subroutine solve_within
 
   !> The Schur block: the dense end of a factor L L^T whose last columns are the last unknowns.
   !> `forward_substitute` gives y = L^-1 P b, `backward_substitute` x = P^T L^-T y. Not every

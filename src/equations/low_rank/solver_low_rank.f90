@@ -81,9 +81,7 @@ contains
     real(rk), intent(inout) :: b(:, :)
     type(error_type), allocatable, intent(out) :: error
     real(rk) :: share(size(self%u, 2), size(b, 2))
-    self%sparse%admissible = self%admissible
-    call self%sparse%solve(b, error)
-    self%sparse%admissible = 0.0_rk
+    call self%sparse%solve_within(self%admissible, b, error)
     if (allocated(error)) return
     call project(self%u, b, share)
     call solve_factored(self%small, share)

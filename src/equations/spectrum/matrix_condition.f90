@@ -52,9 +52,7 @@ contains
       call dlacn2(n, v, x(:, 1), sign_of, condition, kase, kept)
       if (kase == 0) exit
       x(:, 1) = root*x(:, 1)
-      factor%admissible = solve_residual*norm2(x)
-      call factor%solve(x, error)
-      factor%admissible = 0.0_rk
+      call factor%solve_within(solve_residual*norm2(x), x, error)
       if (allocated(error)) return
       x(:, 1) = root*x(:, 1)
     end do

@@ -45,9 +45,7 @@ contains
     do row = 1, size(x)
       call spread_row(self%operator, row, x(row), b(:, 1))
     end do
-    self%factor%admissible = residual_of_product*norm(b(:, 1))
-    call self%factor%solve(b, self%failure)
-    self%factor%admissible = 0.0_rk
+    call self%factor%solve_within(residual_of_product*norm(b(:, 1)), b, self%failure)
     if (.not. allocated(self%failure)) call apply_rows(self%operator, b(:, 1), y)
   end subroutine respond
 

@@ -1,8 +1,9 @@
 !> Newton's linear equations on the jumps, (I - D G) z = D r (theory.md, (8.1)), with G in blocks.
 !>
 !> D = weight*area*(k_ref - tangent); a correction of the jumps is d = r + G z. With one group of
-!> points the equations are solved by its factor, with several by flexible GMRES (Saad 1993) with
-!> the factors of the groups as preconditioner. On several ranks each rank has those of its groups.
+!> points, whose block is all of G, the equations are solved by its factor. With several, or where
+!> more than the blocks is known of G, they are solved by flexible GMRES (Saad 1993) with the
+!> factors of the groups as preconditioner. On several ranks each rank has those of its groups.
 module tangent_equations
   use block_compliance, only: compliance_blocks
   use global_vectors, only: length

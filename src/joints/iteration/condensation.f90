@@ -70,6 +70,7 @@ module condensation
 
   interface
     !> One solve: forward substitution, the iteration on the jumps, backward substitution.
+    !> Iterations count from those of `outcome` on.
     module subroutine solve_from(self, balance, joints, old, new, x, outcome, error)
       implicit none
       class(condensed_equilibrium), intent(inout), target :: self
@@ -78,7 +79,7 @@ module condensation
       type(joint_state), intent(in), target :: old(:)
       type(joint_state), intent(inout), target :: new(:)
       real(rk), intent(out) :: x(:)
-      type(balance_outcome), intent(out) :: outcome
+      type(balance_outcome), intent(inout) :: outcome
       type(error_type), allocatable, intent(out) :: error
     end subroutine solve_from
   end interface
@@ -227,7 +228,6 @@ contains
     type(balance_outcome), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(force_balance) :: nearer
-    integer :: iterations
     self%admissible = self%admissible_residual(balance)
     if (allocated(self%base)) deallocate (self%base, self%base_force)
     call replace_passes(self, error)
@@ -237,17 +237,15 @@ contains
     if (.not. (outcome%has_converged .or. outcome%gives_up .or. balance%is_estimate)) then
       call solve_again(self, balance, joints, old, new, x, outcome, error)
     end if
-    if (allocated(error) .or. .not. outcome%has_converged) then
-      continue
-    else if (self%exact%is_rounded()) then
-      call self%refine(balance, joints, old, new, x, outcome, error)
-    else if (self%solution_drift(balance, new, x) > self%admissible_drift()) then
-      nearer = balance
-      nearer%is_repeated = .true.
-      call nearer%start_from(self%operator, new)
-      iterations = outcome%iterations
-      call self%solve_from(nearer, joints, old, new, x, outcome, error)
-      outcome%iterations = outcome%iterations + iterations
+    if (.not. allocated(error) .and. outcome%has_converged) then
+      if (self%exact%is_rounded()) then
+        call self%refine(balance, joints, old, new, x, outcome, error)
+      else if (self%solution_drift(balance, new, x) > self%admissible_drift()) then
+        nearer = balance
+        nearer%is_repeated = .true.
+        call nearer%start_from(self%operator, new)
+        call self%solve_from(nearer, joints, old, new, x, outcome, error)
+      end if
     end if
     call end_products(self, error)
   end subroutine solve_balance
@@ -264,7 +262,6 @@ contains
     real(rk), intent(inout) :: x(:)
     type(balance_outcome), intent(inout) :: outcome
     type(error_type), allocatable, intent(out) :: error
-    integer :: iterations
     logical :: are_left_out, are_many
     are_left_out = self%condensed%blocks%left_out > smallest_coupling
     are_many = self%operator%num_points > most_completed
@@ -279,9 +276,7 @@ contains
       call self%take_all_blocks(error)
       if (allocated(error)) return
     end if
-    iterations = outcome%iterations
     call self%solve_from(balance, joints, old, new, x, outcome, error)
-    outcome%iterations = outcome%iterations + iterations
   end subroutine solve_again
 
   !> Ends products with G in the place of the blocks; `error` is the failure of one.
@@ -308,7 +303,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(force_balance) :: nearer
     real(rk) :: residual, admissible, drift, force
-    integer :: pass, iterations
+    integer :: pass
     logical :: is_near
     nearer = balance
     do pass = 1, most_refinements
@@ -318,9 +313,7 @@ contains
       admissible = max(self%admissible, self%exact%smallest_residual(self%base))
       if (is_near .and. residual <= admissible) exit
       call nearer%start_from(self%operator, new)
-      iterations = outcome%iterations
       call self%solve_from(nearer, joints, old, new, x, outcome, error)
-      outcome%iterations = outcome%iterations + iterations
       if (allocated(error) .or. .not. outcome%has_converged) return
     end do
     outcome%has_converged = pass <= most_refinements

@@ -42,7 +42,7 @@ contains
     type(joint_state), intent(in), target :: old(:)
     type(joint_state), intent(inout), target :: new(:)
     real(rk), intent(out) :: x(:)
-    type(balance_outcome), intent(out) :: outcome
+    type(balance_outcome), intent(inout) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(joint_increment) :: now
     type(joint_field) :: start
@@ -50,7 +50,7 @@ contains
     real(rk), dimension(3, self%operator%num_points) :: excess, last_excess
     real(rk), allocatable :: half(:)
     integer :: pass, iterations
-    iterations = 0
+    iterations = outcome%iterations
     call now%view(self%controls, joints, self%operator, self%condensed%k_ref, old, new)
     call start_iteration(balance, self%condensed%scale, now)
     associate (k_ref => self%condensed%k_ref, operator => self%operator, field => now%field)

@@ -207,9 +207,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer :: k
     if (.not. self%exact%is_rounded()) then
-      self%factor%admissible = share_of_iteration/share_of_solve*admissible
-      call self%factor%solve(b, error)
-      self%factor%admissible = 0.0_rk
+      call self%factor%solve_within(share_of_iteration/share_of_solve*admissible, b, error)
       return
     end if
     do k = 1, size(b, 2)
