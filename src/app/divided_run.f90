@@ -3,6 +3,7 @@
 module divided_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use analysis_state, only: state, vibration_mode
+  use block_parts, only: divide_blocks
   use cli, only: command_line
   use diagnostic_text, only: text_of_warnings
   use diagnostics, only: diagnostic_list, place, severity_warning
@@ -60,7 +61,10 @@ contains
     if (options%is_material) return
     call refuse_undivided(model, error)
     if (.not. allocated(error)) call take_double_precision(options, model, remarks)
-    if (.not. allocated(error) .and. .not. options%is_check) call divide_elements(model%mesh, error)
+    if (.not. allocated(error) .and. .not. options%is_check) then
+      call divide_elements(model%mesh, error)
+      if (.not. allocated(error)) call divide_blocks(model%mesh, model%inelastic)
+    end if
     call share_error(error)
   end subroutine divide_problem
 

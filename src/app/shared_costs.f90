@@ -23,7 +23,7 @@ contains
       do b = 1, size(model%inelastic)
         associate (solids => model%inelastic(b))
           num_points(solids%material) = num_points(solids%material) &
-                                        + real(size(solids%weight), rk)
+                                        + real(solids%num_points(), rk)
         end associate
       end do
     end if

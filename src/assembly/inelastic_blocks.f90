@@ -13,6 +13,7 @@ module inelastic_blocks
   use material_law, only: material
   use material_points, only: point_set, point_state, stored_energy, fracture_energy, &
                              crushing_energy
+  use ranks, only: this_rank
   use shape_hex8, only: edges_at, hex8_dofs, shape_at
   use slope_products, only: add_forces_of_stress, find_symmetric_gradient
   implicit none
@@ -25,17 +26,19 @@ module inelastic_blocks
   type, extends(guest) :: inelastic_block
     integer :: material = 0 !< position in the problem's list
     integer, allocatable :: elements(:) !< positions in the mesh
+    integer :: rank = 0 !< that calls the law of its points
     integer :: points_of_element = 0
-    real(rk), allocatable :: b(:, :, :, :) !< (6, 24, points, elements) strain operators [1/m]
     !> (8 points, 3, 8, elements) derivatives of the shape functions, where they alone make the
-    !> strain operators: a sixth of the numbers [1/m]
+    !> strain operators [1/m]
     real(rk), allocatable :: slope(:, :, :, :)
+    !> (6, 24, points, elements) strain operators of other elements, six times as many numbers [1/m]
+    real(rk), allocatable :: b(:, :, :, :)
     real(rk), allocatable :: weight(:, :) !< (points, elements) volumes of the points [m3]
     real(rk) :: d(6, 6) = 0.0_rk !< elastic stiffness of the law [Pa]
     type(point_set) :: points !< point q of element e is (e - 1)*points_of_element + q
   contains
     procedure :: add_work
-    procedure :: find_strains, add_forces
+    procedure :: find_strains, add_forces, find_operator, num_points, forget_points, is_here
   end type inelastic_block
 
 contains
@@ -102,10 +105,11 @@ contains
     call place_points(mesh%element_id(elements), x, part)
   end subroutine build_block
 
-  !> Takes the derivatives of the shape functions from the strain operators of eight points.
+  !> Takes the derivatives of the shape functions from the strain operators of eight points, in the
+  !> place of the operators.
   pure subroutine find_slopes(part)
     type(inelastic_block), intent(inout) :: part
-    real(rk) :: plain(6, 3), g(3)
+    real(rk) :: g(3)
     integer :: e, a, q, n
     if (part%points_of_element /= 8) return
     allocate (part%slope(8, 3, 8, size(part%b, 4)))
@@ -115,17 +119,39 @@ contains
         do q = 1, size(part%b, 3)
           g = [part%b(1, n, q, e), part%b(2, n + 1, q, e), part%b(3, n + 2, q, e)]
           part%slope(q, :, a, e) = g
-          plain(:, 1) = [g(1), 0.0_rk, 0.0_rk, g(2), g(3), 0.0_rk]
-          plain(:, 2) = [0.0_rk, g(2), 0.0_rk, g(1), 0.0_rk, g(3)]
-          plain(:, 3) = [0.0_rk, 0.0_rk, g(3), 0.0_rk, g(1), g(2)]
-          if (any(abs(part%b(:, n:n + 2, q, e) - plain) > 0.0_rk)) then
+          if (any(abs(part%b(:, n:n + 2, q, e) - operator_of_slopes(g)) > 0.0_rk)) then
             deallocate (part%slope)
             return
           end if
         end do
       end do
     end do
+    deallocate (part%b)
   end subroutine find_slopes
+
+  !> Strain operator of a node from the derivatives of its shape function.
+  pure function operator_of_slopes(g) result(b)
+    real(rk), intent(in) :: g(3) !< [1/m]
+    real(rk) :: b(6, 3) !< [1/m]
+    b(:, 1) = [g(1), 0.0_rk, 0.0_rk, g(2), g(3), 0.0_rk]
+    b(:, 2) = [0.0_rk, g(2), 0.0_rk, g(1), 0.0_rk, g(3)]
+    b(:, 3) = [0.0_rk, 0.0_rk, g(3), 0.0_rk, g(1), g(2)]
+  end function operator_of_slopes
+
+  !> B at a point of one element.
+  pure subroutine find_operator(self, e, q, b)
+    class(inelastic_block), intent(in) :: self
+    integer, intent(in) :: e, q
+    real(rk), intent(out) :: b(6, hex8_dofs) !< [1/m]
+    integer :: a
+    if (allocated(self%b)) then
+      b = self%b(:, :, q, e)
+      return
+    end if
+    do a = 1, 8
+      b(:, 3*a - 2:3*a) = operator_of_slopes(self%slope(q, :, a, e))
+    end do
+  end subroutine find_operator
 
   !> eps = B u at the points of one element.
   pure subroutine find_strains(self, e, u, strain)
@@ -186,7 +212,36 @@ contains
     end associate
   end subroutine place_points
 
-  !> Energies of the points that have yielded or cracked; all others contribute nothing.
+  !> Whether this rank calls the law.
+  pure logical function is_here(self)
+    class(inelastic_block), intent(in) :: self
+    is_here = self%rank == this_rank()
+  end function is_here
+
+  !> Points of the elements, wherever they are.
+  pure integer function num_points(self)
+    class(inelastic_block), intent(in) :: self
+    num_points = self%points_of_element*size(self%elements)
+  end function num_points
+
+  !> Frees the tables of points that are on another rank.
+  pure subroutine forget_points(self)
+    class(inelastic_block), intent(inout) :: self
+    type(point_set) :: none
+    if (allocated(self%slope)) deallocate (self%slope)
+    if (allocated(self%b)) deallocate (self%b)
+    self%weight = reshape([real(rk) ::], [self%points_of_element, 0])
+    none%element = [integer ::]
+    none%number = [integer ::]
+    none%x = reshape([real(rk) ::], [3, 0])
+    none%edges = reshape([real(rk) ::], [3, 3, 0])
+    none%widest = [real(rk) ::]
+    none%length = [real(rk) ::]
+    self%points = none
+  end subroutine forget_points
+
+  !> Energies of the points that have yielded or cracked; all others contribute nothing. Points of
+  !> other ranks contribute nothing here.
   subroutine add_work(self, own, total)
     class(inelastic_block), intent(in) :: self
     class(history), intent(in) :: own
@@ -194,7 +249,7 @@ contains
     integer :: e, q, p
     select type (own)
     class is (point_state)
-      if (all(own%is_elastic)) return
+      if (.not. self%is_here() .or. all(own%is_elastic)) return
       do e = 1, size(self%elements)
         do q = 1, self%points_of_element
           p = (e - 1)*self%points_of_element + q

@@ -21,16 +21,25 @@ module pattern_builder
 contains
 
   !> Cells of a model: its solid elements and the cells of its guests, those of this rank.
-  subroutine list_cells(mesh, guests, cells)
+  subroutine list_cells(mesh, guests, cells, losing)
     type(fe_mesh), intent(in) :: mesh
     type(guest_reference), intent(in) :: guests(:)
     type(row_table), intent(out) :: cells
-    integer :: e, rank
+    !> Elements whose loss of stiffness this rank finds; another one may have their stiffness
+    integer, intent(in), optional :: losing(:)
+    integer :: e, k, rank
     rank = this_rank()
     do e = 1, mesh%num_elements
       if (.not. is_assembled_here(mesh, rank, e)) cycle
       call cells%append(pack(mesh%nodes(:, e), mesh%nodes(:, e) > 0))
     end do
+    if (present(losing)) then
+      do k = 1, size(losing)
+        if (is_assembled_here(mesh, rank, losing(k))) cycle
+        if (mesh%material_of_element(losing(k)) <= 0) cycle
+        call cells%append(mesh%nodes(:, losing(k)))
+      end do
+    end if
     call list_guest_cells(guests, cells)
     call cells%finish()
   end subroutine list_cells

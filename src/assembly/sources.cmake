@@ -8,6 +8,7 @@ set(sources
   guest_list.f90
   inelastic_blocks.f90
   massless_solids.f90
+  parts/block_parts.f90
   parts/element_parts.f90
   parts/matrix_rows.f90
   parts/node_sequence.f90

@@ -70,7 +70,7 @@ contains
   subroutine set_elastic(model, now)
     type(problem), intent(in) :: model
     type(state), intent(inout) :: now !< with displacements and points at rest
-    real(rk) :: d(6, 6), moved(24)
+    real(rk) :: d(6, 6), b(6, 24), moved(24)
     integer :: i, e, q, p
     do i = 1, size(model%inelastic)
       associate (part => model%inelastic(i))
@@ -79,7 +79,8 @@ contains
           moved = reshape(now%u(:, model%mesh%nodes(:, part%elements(e))), [24])
           do q = 1, part%points_of_element
             p = (e - 1)*part%points_of_element + q
-            now%points(i)%strain(:, p) = matmul(part%b(:, :, q, e), moved)
+            call part%find_operator(e, q, b)
+            now%points(i)%strain(:, p) = matmul(b, moved)
             now%points(i)%stress(:, p) = matmul(d, now%points(i)%strain(:, p))
           end do
         end do

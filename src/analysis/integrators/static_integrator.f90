@@ -9,6 +9,7 @@ module static_integrator
   use free_blocks, only: exceeds_joints, name_free_block
   use joint_law, only: joint_state
   use joint_water, only: press_grout, update_uplift
+  use ranks, only: is_true_everywhere
   use analysis_state, only: state
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
@@ -244,14 +245,15 @@ contains
   end subroutine store_state
 
   !> Whether a solid, or another guest with a history, may not be elastic.
-  pure logical function has_left_elasticity(self, now)
+  logical function has_left_elasticity(self, now)
     class(static_method), intent(in) :: self
     type(state), intent(in) :: now
+    logical :: are_elastic
     integer :: i
     has_left_elasticity = has_histories(now%guests)
-    do i = 1, size(now%points)
-      has_left_elasticity = has_left_elasticity .or. .not. all(now%points(i)%is_elastic)
-    end do
+    are_elastic = all([(all(now%points(i)%is_elastic), i=1, size(now%points))])
+    are_elastic = is_true_everywhere(are_elastic)
+    has_left_elasticity = has_left_elasticity .or. .not. are_elastic
     if (self%solids%has_inelastic()) then
       has_left_elasticity = has_left_elasticity .or. .not. self%solids%matrix%is_elastic
     end if

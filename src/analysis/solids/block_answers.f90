@@ -1,108 +1,157 @@
-!> Answers of blocks of inelastic elements, and their exchange: each rank calls the laws of its
-!> blocks, and all ranks have the states of all points.
+!> Answers of blocks of inelastic elements, and what ranks exchange of them. Each rank calls the
+!> laws of its blocks; the first rank takes all states for the results.
 module block_answers
   use kinds, only: rk
   use inelastic_blocks, only: inelastic_block
   use material_points, only: point_state, update_report
-  use ranks, only: add_over_ranks, num_ranks, this_rank
+  use ranks, only: add_over_ranks, gather_on_first_rank, is_first_rank, largest_of_ranks, &
+                   num_ranks, text_of_rank, this_rank
   use shape_hex8, only: hex8_dofs
   implicit none
   private
-  public :: block_answer, open_answers, share_points
+  public :: block_answer, open_answers, gather_points, share_failure
+
+  integer, parameter :: batch = 512 !< blocks whose states are sent at a time, some 15 MB
 
   !> Forces, tangents and report of the points of a block.
   type :: block_answer
-    real(rk), allocatable :: force(:, :) !< (24, elements) sum w B^T (D eps - sigma) [N]
+    !> (24, elements) sum w B^T (D eps - sigma), (24, 0) for a block of another rank [N]
+    real(rk), allocatable :: force(:, :)
     real(rk), allocatable :: tangent(:, :, :) !< (6, 6, points) [Pa], or (6, 6, 0)
-    logical, allocatable :: has_excess(:) !< (elements) with a point that is not elastic
+    !> (elements) with a point that is not elastic; false for a block of another rank
+    logical, allocatable :: has_excess(:)
     !> (elements) Whether an update moves them; the others keep their last strain and stress
     logical, allocatable :: takes_part(:)
     real(rk), allocatable :: lost(:, :) !< (24, elements) lost damping force [N], if any
     real(rk), allocatable :: correction(:, :) !< (24, elements) of the work [N], if any
     type(update_report) :: report
-    logical :: is_here = .true. !< this rank calls the law of the block
   end type block_answer
 
 contains
 
-  !> Allocates the answers of all blocks. Ranks take blocks in turn.
+  !> Allocates the answers of all blocks.
   subroutine open_answers(blocks, answers)
     type(inelastic_block), intent(in) :: blocks(:)
     type(block_answer), allocatable, intent(out) :: answers(:)
-    integer :: i
+    integer :: i, n
     allocate (answers(size(blocks)))
     do i = 1, size(blocks)
-      allocate (answers(i)%force(hex8_dofs, size(blocks(i)%elements)), &
-                answers(i)%has_excess(size(blocks(i)%elements)), answers(i)%tangent(6, 6, 0))
-      allocate (answers(i)%takes_part(size(blocks(i)%elements)), source=.true.)
-      answers(i)%is_here = mod(i - 1, num_ranks()) == this_rank()
+      n = size(blocks(i)%elements)
+      allocate (answers(i)%force(hex8_dofs, merge(n, 0, blocks(i)%is_here())), &
+                answers(i)%tangent(6, 6, 0))
+      allocate (answers(i)%has_excess(n), source=.false.)
+      allocate (answers(i)%takes_part(n), source=.true.)
     end do
   end subroutine open_answers
 
-  !> Gives what the laws have found to all ranks.
-  subroutine share_points(is_updated, new, answers)
-    logical, intent(in) :: is_updated(:) !< (blocks) the same on all ranks
-    type(point_state), intent(inout) :: new(:) !< (blocks)
-    type(block_answer), intent(inout) :: answers(:) !< (blocks)
-    real(rk), allocatable :: values(:)
-    integer :: first(size(new) + 1), i
+  !> The failure of the first block that has one, of any rank, and the smallest size.
+  subroutine share_failure(num_blocks, block, size_ratio, why)
+    integer, intent(in) :: num_blocks
+    integer, intent(in) :: block !< of this rank, `num_blocks` + 1 for none
+    real(rk), intent(inout) :: size_ratio !< requested over present size
+    character(:), allocatable, intent(inout) :: why !< unallocated without a failure
+    real(rk) :: ratio(0:num_ranks() - 1)
+    character(:), allocatable :: own
+    integer :: first, from
     if (num_ranks() == 1) return
-    first(1) = 1
-    do i = 1, size(new)
-      first(i + 1) = first(i)
-      if (is_updated(i)) first(i + 1) = first(i) + num_values(new(i), answers(i))
-    end do
-    allocate (values(first(size(new) + 1) - 1), source=0.0_rk)
-    do i = 1, size(new)
-      if (.not. (is_updated(i) .and. answers(i)%is_here)) cycle
-      call pack_block(new(i), answers(i), values(first(i):first(i + 1) - 1))
-    end do
-    call add_over_ranks(values)
-    do i = 1, size(new)
-      if (.not. is_updated(i) .or. answers(i)%is_here) cycle
-      call unpack_block(values(first(i):first(i + 1) - 1), new(i), answers(i))
-    end do
-  end subroutine share_points
+    ratio = 0.0_rk
+    ratio(this_rank()) = size_ratio
+    call add_over_ranks(ratio)
+    size_ratio = minval(ratio)
+    first = -largest_of_ranks(-block)
+    if (first > num_blocks) return
+    from = largest_of_ranks(merge(this_rank(), -1, block == first))
+    own = ''
+    if (allocated(why)) own = why
+    why = text_of_rank(from, own)
+  end subroutine share_failure
 
-  !> Numbers of a block that are exchanged.
-  pure integer function num_values(new, answer)
-    type(point_state), intent(in) :: new
-    type(block_answer), intent(in) :: answer
-    num_values = size(new%stress) + size(new%internal) + size(new%energy) &
-                 + size(new%is_elastic) + size(answer%tangent) + 2
+  !> Gives the states of all blocks to the first rank.
+  subroutine gather_points(blocks, states)
+    type(inelastic_block), intent(in) :: blocks(:)
+    type(point_state), intent(inout) :: states(:) !< (blocks)
+    integer :: first, last
+    if (num_ranks() == 1) return
+    do first = 1, size(blocks), batch
+      last = min(first + batch - 1, size(blocks))
+      call gather_batch(blocks(first:last), states(first:last))
+    end do
+  end subroutine gather_points
+
+  !> Gives the states of some blocks to the first rank, which has its own ones.
+  subroutine gather_batch(blocks, states)
+    type(inelastic_block), intent(in) :: blocks(:)
+    type(point_state), intent(inout) :: states(:) !< (blocks)
+    real(rk), allocatable :: own(:), all(:)
+    integer :: start(num_ranks() + 1), next(0:num_ranks() - 1), i, n, last
+    start = 0
+    next = 0
+    do i = 1, size(blocks)
+      if (blocks(i)%rank == 0) cycle
+      if (blocks(i)%is_here() .or. is_first_rank()) then
+        next(blocks(i)%rank) = next(blocks(i)%rank) + num_values(states(i))
+      end if
+    end do
+    do i = 1, num_ranks()
+      start(i + 1) = start(i) + next(i - 1)
+    end do
+    allocate (own(merge(0, next(this_rank()), is_first_rank())))
+    allocate (all(merge(start(num_ranks() + 1), 0, is_first_rank())))
+    last = 0
+    do i = 1, size(blocks)
+      if (is_first_rank() .or. .not. blocks(i)%is_here()) cycle
+      n = num_values(states(i))
+      call pack_block(states(i), own(last + 1:last + n))
+      last = last + n
+    end do
+    call gather_on_first_rank(own, start, all)
+    if (.not. is_first_rank()) return
+    next = start(:num_ranks())
+    do i = 1, size(blocks)
+      if (blocks(i)%rank == 0) cycle
+      n = num_values(states(i))
+      last = next(blocks(i)%rank)
+      call unpack_block(all(last + 1:last + n), states(i))
+      next(blocks(i)%rank) = last + n
+    end do
+  end subroutine gather_batch
+
+  !> Numbers of a block that are exchanged. The first rank finds temperatures and thermal strains
+  !> for itself.
+  pure integer function num_values(own)
+    type(point_state), intent(in) :: own
+    num_values = size(own%strain) + size(own%stress) + size(own%internal) + size(own%energy) &
+                 + size(own%gradient) + size(own%is_elastic)
   end function num_values
 
   !> Writes the numbers of a block.
-  pure subroutine pack_block(new, answer, values)
-    type(point_state), intent(in) :: new
-    type(block_answer), intent(in) :: answer
+  pure subroutine pack_block(own, values)
+    type(point_state), intent(in) :: own
     real(rk), intent(out) :: values(:)
-    values = [reshape(new%stress, [size(new%stress)]), &
-              reshape(new%internal, [size(new%internal)]), &
-              reshape(new%energy, [size(new%energy)]), &
-              merge(1.0_rk, 0.0_rk, new%is_elastic), &
-              reshape(answer%tangent, [size(answer%tangent)]), &
-              answer%report%size_ratio, real(answer%report%failed_point, rk)]
+    values = [reshape(own%strain, [size(own%strain)]), &
+              reshape(own%stress, [size(own%stress)]), &
+              reshape(own%internal, [size(own%internal)]), &
+              reshape(own%energy, [size(own%energy)]), &
+              reshape(own%gradient, [size(own%gradient)]), &
+              merge(1.0_rk, 0.0_rk, own%is_elastic)]
   end subroutine pack_block
 
   !> Reads the numbers of a block.
-  pure subroutine unpack_block(values, new, answer)
+  pure subroutine unpack_block(values, own)
     real(rk), intent(in) :: values(:)
-    type(point_state), intent(inout) :: new
-    type(block_answer), intent(inout) :: answer
+    type(point_state), intent(inout) :: own
     integer :: last
     last = 0
-    new%stress = reshape(values(last + 1:last + size(new%stress)), shape(new%stress))
-    last = last + size(new%stress)
-    new%internal = reshape(values(last + 1:last + size(new%internal)), shape(new%internal))
-    last = last + size(new%internal)
-    new%energy = reshape(values(last + 1:last + size(new%energy)), shape(new%energy))
-    last = last + size(new%energy)
-    new%is_elastic = values(last + 1:last + size(new%is_elastic)) > 0.5_rk
-    last = last + size(new%is_elastic)
-    answer%tangent = reshape(values(last + 1:last + size(answer%tangent)), shape(answer%tangent))
-    last = last + size(answer%tangent)
-    answer%report%size_ratio = values(last + 1)
-    answer%report%failed_point = nint(values(last + 2))
+    own%strain = reshape(values(last + 1:last + size(own%strain)), shape(own%strain))
+    last = last + size(own%strain)
+    own%stress = reshape(values(last + 1:last + size(own%stress)), shape(own%stress))
+    last = last + size(own%stress)
+    own%internal = reshape(values(last + 1:last + size(own%internal)), shape(own%internal))
+    last = last + size(own%internal)
+    own%energy = reshape(values(last + 1:last + size(own%energy)), shape(own%energy))
+    last = last + size(own%energy)
+    own%gradient = reshape(values(last + 1:last + size(own%gradient)), shape(own%gradient))
+    last = last + size(own%gradient)
+    own%is_elastic = values(last + 1:last + size(own%is_elastic)) > 0.5_rk
   end subroutine unpack_block
 end module block_answers

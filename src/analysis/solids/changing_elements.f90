@@ -10,6 +10,7 @@ module changing_elements
   use kinds, only: rk
   use material_points, only: point_state
   use problem_definition, only: problem
+  use ranks, only: add_over_ranks, num_ranks
   implicit none
   private
   public :: element_choice
@@ -54,6 +55,7 @@ contains
     self%takes_part(:) = .false.
     is_near = wants_all
     do i = 1, size(answers)
+      if (.not. model%inelastic(i)%is_here()) cycle
       associate (part => model%inelastic(i), report => answers(i)%report)
         n = part%points_of_element
         do e = 1, size(part%elements)
@@ -65,9 +67,20 @@ contains
         end do
       end associate
     end do
+    call mark_on_all_ranks(is_near)
     call self%add_near(model, answers, is_near)
     call self%tell_blocks(model, answers)
   end subroutine choose_elements
+
+  !> Marks what any rank has marked.
+  subroutine mark_on_all_ranks(is_marked)
+    logical, intent(inout) :: is_marked(:)
+    real(rk) :: number(size(is_marked))
+    if (num_ranks() == 1) return
+    number = merge(1.0_rk, 0.0_rk, is_marked)
+    call add_over_ranks(number)
+    is_marked = number > 0.5_rk
+  end subroutine mark_on_all_ranks
 
   !> The next update is that of the elements that take no part.
   subroutine ask_others(self, answers)
@@ -89,17 +102,17 @@ contains
     logical, intent(out) :: has_grown
     logical :: is_near(model%mesh%num_nodes)
     integer :: i, e
-    has_grown = .false.
     is_near = .false.
     do i = 1, size(answers)
       do e = 1, size(answers(i)%has_excess)
         associate (element => model%inelastic(i)%elements(e))
           if (.not. answers(i)%has_excess(e) .or. self%takes_part(element)) cycle
-          has_grown = .true.
           is_near(model%mesh%nodes(:, element)) = .true.
         end associate
       end do
     end do
+    call mark_on_all_ranks(is_near)
+    has_grown = any(is_near)
     if (has_grown) call self%add_near(model, answers, is_near)
     call self%tell_blocks(model, answers)
   end subroutine extend_choice

@@ -18,6 +18,7 @@ module conserving_stress
   use material_points, only: consistent_tangent, crushing_energy, fracture_energy, no_tangent, &
                              point_state, stored_energy, time_increment, update_report
   use problem_definition, only: problem
+  use ranks, only: add_over_ranks
   use shape_hex8, only: hex8_dofs
   implicit none
   private
@@ -86,7 +87,7 @@ contains
     !$omp parallel do schedule(dynamic) default(none) &
     !$omp shared(self, model, time, old, new, answers) if (has_many_elements(answers))
     do i = 1, size(answers)
-      if (.not. self%has_energy(i)) cycle
+      if (.not. (self%has_energy(i) .and. model%inelastic(i)%is_here())) cycle
       associate (part => model%inelastic(i))
         call correct_block(model%materials(part%material)%law, part, time, self%weight, old(i), &
                            new(i), answers(i))
@@ -98,6 +99,7 @@ contains
       if (.not. allocated(answers(i)%correction)) cycle
       call add_elements(model, i, answers(i)%correction, answers(i)%has_excess, nodal)
     end do
+    call add_over_ranks(nodal)
     self%force = excess ! for its size
     call numbers%reduce(nodal, self%force)
     excess = excess - self%weight*self%force

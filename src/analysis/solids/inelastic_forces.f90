@@ -6,7 +6,7 @@
 !> summed over the points that are not elastic. Threads update blocks of elements; forces are
 !> summed in the order of the blocks, so that results do not depend on the number of threads.
 module inelastic_forces
-  use block_answers, only: block_answer, open_answers, share_points
+  use block_answers, only: block_answer, open_answers, share_failure
   use dam_mesh, only: element_is_there
   use kinds, only: rk
   use problem_definition, only: problem
@@ -16,7 +16,7 @@ module inelastic_forces
   use gauss_rules, only: hex_point
   use shape_hex8, only: derivative_at, gradient_at, hex8_dofs
   use material_points, only: point_state, time_increment, no_tangent
-  use ranks, only: num_ranks
+  use ranks, only: add_over_ranks, is_first_rank
   implicit none
   private
   public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
@@ -48,33 +48,7 @@ contains
       if (.not. model%materials(model%inelastic(i)%material)%law%is_serial) cycle
       call update_block(model, model%inelastic(i), u, origin, time, old(i), new(i), answers(i))
     end do
-    if (num_ranks() > 1) call take_others(model, time, old, new, answers)
   end subroutine update_points
-
-  !> Takes the blocks of other ranks. A failure is repeated here, which finds its words.
-  subroutine take_others(model, time, old, new, answers)
-    type(problem), intent(in) :: model
-    type(time_increment), intent(in) :: time
-    type(point_state), intent(in) :: old(:) !< (blocks) converged
-    type(point_state), intent(inout) :: new(:) !< (blocks)
-    type(block_answer), intent(inout) :: answers(:) !< (blocks)
-    logical :: is_updated(size(answers))
-    integer :: i
-    do i = 1, size(answers)
-      is_updated(i) = any(answers(i)%takes_part) .and. &
-                      element_is_there(model%mesh, model%inelastic(i)%elements(1))
-    end do
-    call share_points(is_updated, new, answers)
-    do i = 1, size(answers)
-      if (.not. is_updated(i) .or. answers(i)%is_here) cycle
-      associate (report => answers(i)%report, part => model%inelastic(i))
-        if (report%failed_point > 0 .or. report%size_ratio < 1.0_rk) then
-          call call_law(model, part, time, old(i), new(i), answers(i))
-        end if
-        call sum_block(part, new(i), answers(i))
-      end associate
-    end do
-  end subroutine take_others
 
   !> Energies at the strains of the last update, of laws that defer them.
   subroutine complete_energies(model, time, old, new, answers)
@@ -90,16 +64,14 @@ contains
     !$omp parallel do schedule(dynamic) default(none) shared(model, moment, old, new, answers) &
     !$omp if (has_many_elements(answers))
     do i = 1, size(answers)
+      if (.not. model%inelastic(i)%is_here()) cycle
       associate (law => model%materials(model%inelastic(i)%material)%law)
         if (.not. law%defers_energy .or. all(new(i)%is_elastic)) cycle
-        if (.not. answers(i)%is_here) cycle
         call law%update(model%inelastic(i)%points, moment, old(i), new(i), answers(i)%tangent, &
                         answers(i)%report)
       end associate
     end do
     !$omp end parallel do
-    if (num_ranks() == 1) return
-    call share_points([(.not. all(new(i)%is_elastic), i=1, size(answers))], new, answers)
   end subroutine complete_energies
 
   !> Whether several threads are faster than one.
@@ -121,11 +93,11 @@ contains
     integer :: i
     do i = 1, size(answers)
       answers(i)%takes_part(:) = .true.
-      call sum_block(model%inelastic(i), points(i), answers(i))
+      if (model%inelastic(i)%is_here()) call sum_block(model%inelastic(i), points(i), answers(i))
     end do
   end subroutine recall_points
 
-  !> Updates one block, of another rank up to its strains.
+  !> Updates one block, unless it is that of another rank.
   subroutine update_block(model, part, u, origin, time, old, new, answer)
     type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
@@ -136,7 +108,7 @@ contains
     type(point_state), intent(inout) :: new
     type(block_answer), intent(inout) :: answer
     integer :: num_tangents
-    if (.not. any(answer%takes_part)) return
+    if (.not. (part%is_here() .and. any(answer%takes_part))) return
     num_tangents = merge(0, part%points%num_points, time%tangent == no_tangent)
     if (size(answer%tangent, 3) /= num_tangents) then
       deallocate (answer%tangent)
@@ -147,7 +119,6 @@ contains
       return
     end if
     call move_points(model, part, u, origin, answer%takes_part, new)
-    if (.not. answer%is_here) return
     call call_law(model, part, time, old, new, answer)
     call sum_block(part, new, answer)
   end subroutine update_block
@@ -257,9 +228,11 @@ contains
     real(rk), allocatable :: nodal(:, :)
     integer :: i
     nodal = of_guests
+    if (.not. is_first_rank()) nodal = 0.0_rk
     do i = 1, size(answers)
       call add_elements(model, i, answers(i)%force, answers(i)%has_excess, nodal)
     end do
+    call add_over_ranks(nodal)
     call numbers%reduce(nodal, excess)
   end subroutine sum_excess
 
@@ -283,14 +256,16 @@ contains
     type(problem), intent(in) :: model
     type(block_answer), intent(in) :: answers(:)
     real(rk), intent(out) :: size_ratio !< requested over present size; 1: no request
-    character(:), allocatable, intent(out) :: why !< unallocated without a request
+    character(:), allocatable, intent(out) :: why !< of all ranks; unallocated without a request
     character(80) :: place
-    integer :: i
+    integer :: i, first
     size_ratio = 1.0_rk
+    first = size(answers) + 1
     do i = 1, size(answers)
       associate (report => answers(i)%report, part => model%inelastic(i))
         size_ratio = min(size_ratio, report%size_ratio)
         if (allocated(why) .or. (report%failed_point == 0 .and. report%size_ratio >= 1.0_rk)) cycle
+        first = i
         why = 'the law requests a smaller increment'
         if (allocated(report%message)) why = report%message
         place = ''
@@ -301,5 +276,6 @@ contains
         why = 'material '//model%materials(part%material)%name//trim(place)//': '//why
       end associate
     end do
+    call share_failure(size(answers), first, size_ratio, why)
   end subroutine find_failure
 end module inelastic_forces

@@ -1,7 +1,6 @@
 !> Loss of stiffness of inelastic solids, A = sum w B^T (D - C) B with the tangents C of the laws.
 !> The tangent of the solids is K - A (theory.md, 12).
 module inelastic_stiffness
-  use dam_mesh, only: is_assembled_here
   use kinds, only: rk
   use problem_definition, only: problem
   use shape_hex8, only: hex8_dofs
@@ -9,7 +8,6 @@ module inelastic_stiffness
   use matrix_pattern, only: pattern
   use inelastic_blocks, only: inelastic_block
   use inelastic_forces, only: block_answer, has_many_elements
-  use ranks, only: this_rank
   use scatter_matrix, only: scatter_nodes
   implicit none
   private
@@ -19,8 +17,8 @@ module inelastic_stiffness
 
 contains
 
-  !> A from the tangents of the last update. A symmetric pattern takes the lower triangle and needs
-  !> symmetric tangents.
+  !> A from the tangents of the last update, the part of the blocks of this rank. A symmetric
+  !> pattern takes the lower triangle and needs symmetric tangents.
   subroutine lost_stiffness(model, numbers, answers, matrix, values)
     type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
@@ -45,7 +43,7 @@ contains
       !$omp end parallel do
       do i = first, last
         do e = 1, size(answers(i)%has_excess)
-          if (.not. is_lost_here(model, model%inelastic(i), answers(i), e)) cycle
+          if (.not. answers(i)%has_excess(e)) cycle
           call scatter_nodes(numbers, model%mesh%nodes(:, model%inelastic(i)%elements(e)), &
                              ke(:, :, e, i - first + 1), matrix, values)
         end do
@@ -53,33 +51,23 @@ contains
     end do
   end subroutine lost_stiffness
 
-  !> Whether this rank adds the matrix of an element.
-  logical function is_lost_here(model, part, answer, e)
-    type(problem), intent(in) :: model
-    type(inelastic_block), intent(in) :: part
-    type(block_answer), intent(in) :: answer
-    integer, intent(in) :: e !< of the block
-    is_lost_here = answer%has_excess(e)
-    if (.not. is_lost_here) return
-    is_lost_here = is_assembled_here(model%mesh, this_rank(), part%elements(e))
-  end function is_lost_here
-
   !> Matrices of the elements of a block, where they have an initial-stress force.
   subroutine integrate_block(model, part, answer, ke)
     type(problem), intent(in) :: model
     type(inelastic_block), intent(in) :: part
     type(block_answer), intent(in) :: answer
     real(rk), intent(inout) :: ke(:, :, :) !< (24, 24, elements)
-    real(rk) :: d(6, 6), lost(6, 6)
+    real(rk) :: d(6, 6), lost(6, 6), b(6, hex8_dofs)
     integer :: e, q
     call model%materials(part%material)%law%elastic_stiffness(d)
     do e = 1, size(part%elements)
-      if (.not. is_lost_here(model, part, answer, e)) cycle
+      if (.not. answer%has_excess(e)) cycle
       ke(:, :, e) = 0.0_rk
       do q = 1, part%points_of_element
         lost = part%weight(q, e)*(d - answer%tangent(:, :, (e - 1)*part%points_of_element + q))
         if (.not. any(abs(lost) > 0.0_rk)) cycle
-        call add_point(lost, part%b(:, :, q, e), ke(:, :, e))
+        call part%find_operator(e, q, b)
+        call add_point(lost, b, ke(:, :, e))
       end do
     end do
   end subroutine integrate_block

@@ -9,7 +9,6 @@
 module lost_damping
   use damping_rayleigh, only: rayleigh_coefficients
   use dof_numbering, only: numbering
-  use element_matrices, only: strains_at_points
   use increment_balance, only: increment_task
   use inelastic_blocks, only: inelastic_block
   use inelastic_forces, only: add_elements, block_answer, has_many_elements
@@ -17,6 +16,7 @@ module lost_damping
   use material_points, only: point_state
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
+  use ranks, only: add_over_ranks
   use shape_hex8, only: hex8_dofs
   use step_plan, only: step
   implicit none
@@ -87,6 +87,7 @@ contains
       if (.not. allocated(answers(i)%lost)) cycle
       call add_elements(model, i, answers(i)%lost, answers(i)%has_excess, force)
     end do
+    call add_over_ranks(force)
     self%force = excess ! for its size
     call numbers%reduce(force, self%force)
     excess = excess + self%force
@@ -101,30 +102,27 @@ contains
     real(rk), intent(in) :: velocity_of_x !< [1/s]
     type(point_state), intent(in) :: old
     type(block_answer), intent(inout) :: answer
-    real(rk) :: moved(hex8_dofs, size(part%elements)), factor(part%points%num_points), loss
-    real(rk) :: rate(6, part%points_of_element, size(part%elements)), stress(6)
-    integer :: e, q, p, i
+    real(rk) :: factor(part%points%num_points), loss, moved(hex8_dofs)
+    real(rk) :: rate(6, part%points_of_element), stress(part%points_of_element, 6)
+    integer :: e, q, p
     if (allocated(answer%lost)) deallocate (answer%lost)
-    if (beta <= 0.0_rk .or. all(old%is_elastic)) return
+    if (beta <= 0.0_rk .or. .not. part%is_here() .or. all(old%is_elastic)) return
     allocate (answer%lost(hex8_dofs, size(part%elements)), source=0.0_rk)
     call model%materials(part%material)%law%find_stiffness_factors(old, factor)
     do e = 1, size(part%elements)
-      moved(:, e) = gather_vectors(v, model%mesh%nodes(:, part%elements(e)))
-    end do
-    call strains_at_points(part%b, moved, rate)
-    do e = 1, size(part%elements)
+      moved = gather_vectors(v, model%mesh%nodes(:, part%elements(e)))
+      call part%find_strains(e, moved, rate)
+      stress = 0.0_rk
       do q = 1, part%points_of_element
         p = (e - 1)*part%points_of_element + q
         loss = beta*(1.0_rk - factor(p))
         if (old%is_elastic(p) .or. loss <= 0.0_rk) cycle
-        stress = part%weight(q, e)*loss*matmul(part%d, rate(:, q, e))
-        do i = 1, hex8_dofs
-          answer%lost(i, e) = answer%lost(i, e) + sum(part%b(:, i, q, e)*stress)
-        end do
+        stress(q, :) = part%weight(q, e)*loss*matmul(part%d, rate(:, q))
         answer%has_excess(e) = .true.
         if (size(answer%tangent, 3) == 0) cycle
         answer%tangent(:, :, p) = answer%tangent(:, :, p) - velocity_of_x*loss*part%d
       end do
+      call part%add_forces(e, stress, answer%lost(:, e))
     end do
   end subroutine sum_block
 end module lost_damping

@@ -15,6 +15,7 @@ module stage_entry
   use analysis_state, only: energy_balance, state
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
+  use ranks, only: add_over_ranks
   use shape_hex8, only: hex8_dofs
   use stage_joints, only: fill_joints, harden_pressed, move_points, shift_points, start_phases
   use stage_nodes, only: place_nodes
@@ -109,24 +110,35 @@ contains
     type(problem), intent(in) :: model
     logical, intent(in) :: was_absent(:) !< (elements)
     type(state), intent(inout) :: now
+    real(rk) :: spent(num_energies, size(now%points))
     integer :: i
+    spent = 0.0_rk
     do i = 1, size(now%points)
       associate (part => model%inelastic(i))
         if (was_absent(part%elements(1)) .eqv. &
             .not. element_is_there(model%mesh, part%elements(1))) cycle
-        call keep_dissipated(part, now%points(i), now%energy)
+        if (part%is_here()) spent(:, i) = dissipated_energies(part, now%points(i))
         call start_points(model%materials(part%material)%law, part%points, now%points(i))
       end associate
     end do
+    call add_over_ranks(spent)
+    do i = 1, size(now%points)
+      call keep_dissipated(spent(:, i), now%energy)
+    end do
   end subroutine renew_points
 
-  !> Adds the energies that a block has dissipated so far to those of solids that have left.
-  pure subroutine keep_dissipated(part, own, energy)
+  !> The energies that a block has dissipated so far [J].
+  pure function dissipated_energies(part, own) result(spent)
     type(inelastic_block), intent(in) :: part
     type(point_state), intent(in) :: own
-    type(energy_balance), intent(inout) :: energy
     real(rk) :: spent(num_energies)
     spent = matmul(own%energy, reshape(part%weight, [size(part%weight)]))
+  end function dissipated_energies
+
+  !> Adds the energies that a block has dissipated so far to those of solids that have left.
+  pure subroutine keep_dissipated(spent, energy)
+    real(rk), intent(in) :: spent(num_energies) !< [J]
+    type(energy_balance), intent(inout) :: energy
     energy%left_cracking = energy%left_cracking + spent(fracture_energy)
     energy%left_crushing = energy%left_crushing + spent(crushing_energy)
     energy%left_created = energy%left_created + spent(created_energy)

@@ -5,6 +5,8 @@ module guest_histories
   use inelastic_blocks, only: fewest_blocks
   use problem_definition, only: problem
   use analysis_state, only: state
+  use kinds, only: rk
+  use ranks, only: add_over_ranks, num_ranks
   implicit none
   private
   public :: history_reference, list_histories, start_histories, sum_work
@@ -20,7 +22,7 @@ module guest_histories
 contains
 
   !> The histories that there are, with their owners where the model is given. The list points into
-  !> `now` and `model`.
+  !> `now` and `model`. Blocks of points that another rank alone has are null.
   subroutine list_histories(now, list, model)
     type(state), intent(in), target :: now
     type(history_reference), allocatable, intent(out) :: list(:)
@@ -35,8 +37,8 @@ contains
     end do
     n = size(now%joints)
     do i = 1, size(now%points)
-      list(n + i)%own => now%points(i)
       list(n + i)%kind = 'points'
+      if (size(now%points(i)%is_elastic) > 0) list(n + i)%own => now%points(i)
       list(n + i)%number = i
       if (present(model)) list(n + i)%owner => model%inelastic(i)
     end do
@@ -76,6 +78,7 @@ contains
       if (associated(list(i)%own)) call list(i)%owner%add_work(list(i)%own, part(i))
     end do
     !$omp end parallel do
+    call share_work(list, part)
     ! In the order of the list: the same sum for any number of threads.
     do i = 1, size(list)
       total%stored = total%stored + part(i)%stored
@@ -84,4 +87,22 @@ contains
       total%crushing = total%crushing + part(i)%crushing
     end do
   end subroutine sum_work
+
+  !> Gives the energies of blocks, which one rank has each, to all ranks; those of other guests all
+  !> ranks have.
+  subroutine share_work(list, part)
+    type(history_reference), intent(in) :: list(:)
+    type(stored_work), intent(inout) :: part(:)
+    real(rk), allocatable :: values(:, :)
+    integer, allocatable :: blocks(:)
+    integer :: i
+    if (num_ranks() == 1) return
+    blocks = pack([(i, i=1, size(list))], list%kind == 'points')
+    values = reshape([part(blocks)%stored, part(blocks)%fracture, part(blocks)%crushing], &
+                     [size(blocks), 3])
+    call add_over_ranks(values)
+    part(blocks)%stored = values(:, 1)
+    part(blocks)%fracture = values(:, 2)
+    part(blocks)%crushing = values(:, 3)
+  end subroutine share_work
 end module guest_histories

@@ -12,6 +12,7 @@ module initial_state
   use joint_law, only: joint_state
   use joint_forces, only: start_joints
   use errors, only: error_type, raise
+  use block_answers, only: gather_points
   use inelastic_forces, only: block_answer, open_answers, update_points, find_failure
   use material_law, only: start_points
   use material_points, only: time_increment, point_state, no_tangent
@@ -93,6 +94,7 @@ contains
     old = now%points
     call update_points(model, now%u, now%origin, time_increment(tangent=no_tangent), old, &
                        now%points, answers)
+    call gather_points(model%inelastic, now%points)
     call find_failure(model, answers, size_ratio, why)
     if (allocated(why)) call raise(error, 'initial displacements: '//why)
   end subroutine strain_points

@@ -6,6 +6,7 @@ module step_loop
   use errors, only: error_type, raise, system_failed
   use problem_definition, only: problem
   use step_plan, only: step
+  use block_answers, only: gather_points
   use analysis_state, only: last_matrix, reduction_status, state, time_accuracy
   use step_control, only: increment_control, start_control
   use increment_listener, only: listener
@@ -16,6 +17,7 @@ module step_loop
   use matrix_pattern, only: pattern
   use modal_errors, only: modal_error
   use path_sampling, only: sample_paths
+  use ranks, only: is_first_rank
   use integrator_type, only: integrator
   use stage_entry, only: enter_stage, show_stage
   use integrator_catalogue, only: make_integrator
@@ -273,7 +275,12 @@ contains
       trial%matrix%has_all_blocks = method%solids%solver%has_all_blocks
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
       if (allocated(next%weights)) call follow_error(plan, now, next, results)
-      if (method%solids%has_inelastic()) call follow_law(model, plan, method, now, trial, results)
+      if (method%solids%has_inelastic()) then
+        call results%costs%start('recover', 'inelastic solids', 'inelastic')
+        call gather_points(model%inelastic, trial%points)
+        call results%costs%stop()
+        call follow_law(model, plan, method, now, trial, results)
+      end if
       call count_increment(plan, next%when, next%outcome, trial)
       call method%store_state(model, next%when, trial, results, error)
     end associate
@@ -297,6 +304,7 @@ contains
       trial%path%num_points = 0
       return
     end if
+    if (.not. is_first_rank()) return ! it has all points
     call results%costs%start('estimate', 'law', 'output')
     call move_alloc(now%twins, trial%twins)
     call sample_paths(model, method%solids%time, now%points, trial%points, trial%twins, trial%path)

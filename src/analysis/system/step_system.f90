@@ -4,6 +4,7 @@ module step_system
   use errors, only: error_type
   use problem_definition, only: problem
   use analysis_state, only: motion, state
+  use block_parts, only: elements_here
   use assemble_heat, only: assemble_thermal_force
   use row_tables, only: row_table
   use step_plan, only: step
@@ -220,7 +221,7 @@ contains
     call guests_of_step(model, plan, guests)
     call number_step(model%mesh, model%joints, model%guests, plan%fixities, system%numbers, error)
     if (allocated(error)) return
-    call list_cells(model%mesh, guests, cells)
+    call list_cells(model%mesh, guests, cells, elements_here(model%inelastic))
     call build_pattern(system%numbers, cells, system%matrix)
     if (allocated(model%mesh%rank_of_element)) then
       call lay_out_rows(model%mesh, system%numbers, cells, system%matrix)

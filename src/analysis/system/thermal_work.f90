@@ -9,6 +9,7 @@ module thermal_work
   use kinds, only: rk
   use material_points, only: point_state
   use problem_definition, only: problem
+  use ranks, only: add_over_ranks
   implicit none
   private
   public :: add_thermal_work
@@ -22,6 +23,7 @@ contains
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
     real(rk) :: elastic, lost
+    real(rk), allocatable :: of_block(:)
     integer :: i
     if (.not. allocated(after%motion%thermal)) return
     associate (old => before%motion, new => after%motion)
@@ -29,9 +31,14 @@ contains
                 - 0.5_rk*dot(old%q + new%q, new%thermal - old%thermal)
     end associate
     lost = 0.0_rk
+    allocate (of_block(size(after%points)), source=0.0_rk)
     do i = 1, size(after%points)
-      if (.not. allocated(after%points(i)%thermal)) cycle
-      lost = lost + lost_work(model%inelastic(i), before%points(i), after%points(i))
+      if (.not. (allocated(after%points(i)%thermal) .and. model%inelastic(i)%is_here())) cycle
+      of_block(i) = lost_work(model%inelastic(i), before%points(i), after%points(i))
+    end do
+    call add_over_ranks(of_block)
+    do i = 1, size(of_block)
+      lost = lost + of_block(i)
     end do
     after%energy%temperature = after%energy%temperature + elastic + lost
     after%energy%numerical = after%energy%numerical + lost

@@ -172,7 +172,7 @@ contains
     total = 0.0_rk
     if (.not. allocated(model%inelastic)) return
     do i = 1, size(model%inelastic)
-      total = total + model%inelastic(i)%points%num_points
+      total = total + model%inelastic(i)%num_points()
     end do
   end function law_points_of
 

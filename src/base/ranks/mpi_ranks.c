@@ -93,6 +93,18 @@ void keyway_gather_rows(const double *own, double *all, int num_ranks, const int
   free(count);
 }
 
+/* `first` counts on rank 0 alone, where it has the place of each rank's numbers in `all`. */
+void keyway_gather_on_first_rank(const double *own, int length, double *all, int num_ranks,
+                                 const int *first)
+{
+  int *count = malloc((size_t)num_ranks * sizeof *count);
+  if (!count) MPI_Abort(MPI_COMM_WORLD, 3);
+  for (int i = 0; i < num_ranks; i++) count[i] = first[i + 1] - first[i];
+  if (number > 1)
+    MPI_Gatherv(own, length, MPI_DOUBLE, all, count, first, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  free(count);
+}
+
 int keyway_least_of_ranks(int own)
 {
   int least = own;

@@ -24,6 +24,9 @@ TIMED(Barrier, (MPI_Comm comm), (comm))
 TIMED(Allgatherv, (const void *own, int n, MPI_Datatype type, void *all, const int *counts,
                    const int *starts, MPI_Datatype types, MPI_Comm comm),
       (own, n, type, all, counts, starts, types, comm))
+TIMED(Gatherv, (const void *own, int n, MPI_Datatype type, void *all, const int *counts,
+                const int *starts, MPI_Datatype types, int to, MPI_Comm comm),
+      (own, n, type, all, counts, starts, types, to, comm))
 TIMED(Recv, (void *x, int n, MPI_Datatype type, int from, int tag, MPI_Comm comm, MPI_Status *end),
       (x, n, type, from, tag, comm, end))
 TIMED(Wait, (MPI_Request *request, MPI_Status *end), (request, end))

@@ -1,7 +1,7 @@
 !> How evenly the work of a run is divided: the ledgers of all ranks together.
 module rank_balance
   use kinds, only: rk
-  use ranks, only: add_over_ranks, exchange_seconds, num_ranks, this_rank, text_of_first_rank
+  use ranks, only: add_over_ranks, exchange_seconds, num_ranks, this_rank, text_of_rank
   use run_ledger, only: ledger, ledger_part
   use timer, only: peak_memory
   use write_text, only: as_text, as_short_text
@@ -52,7 +52,7 @@ contains
     do i = 1, size(parts)
       names = names//parts(i)%name()//between
     end do
-    names = text_of_first_rank(names)
+    names = text_of_rank(0, names)
     allocate (balance%parts(count([(names(i:i) == between, i=1, len(names))])))
     first = 1
     do i = 1, size(balance%parts)

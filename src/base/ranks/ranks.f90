@@ -11,7 +11,8 @@ module ranks
   private
   public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
   public :: exchange_seconds, num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere
-  public :: largest_of_ranks, number_of_first_rank, text_of_first_rank, share_error
+  public :: largest_of_ranks, number_of_first_rank, text_of_rank, share_error
+  public :: gather_on_first_rank
 
   !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
   !> results meanwhile.
@@ -37,7 +38,8 @@ module ranks
       real(c_double) :: seconds
     end function exchange_seconds
 
-    function keyway_num_ranks() result(number) bind(c)
+    ! Pure: the ranks do not change after `start_ranks`.
+    pure function keyway_num_ranks() result(number) bind(c)
       import :: c_int
       implicit none
       integer(c_int) :: number
@@ -49,7 +51,7 @@ module ranks
       integer(c_int) :: number
     end function keyway_num_ranks_here
 
-    function keyway_this_rank() result(number) bind(c)
+    pure function keyway_this_rank() result(number) bind(c)
       import :: c_int
       implicit none
       integer(c_int) :: number
@@ -85,6 +87,16 @@ module ranks
       real(c_double), intent(out) :: all(first(num_ranks + 1))
     end subroutine keyway_gather_rows
 
+    subroutine keyway_gather_on_first_rank(own, length, all, num_ranks, first) bind(c)
+      import :: c_double, c_int
+      implicit none
+      integer(c_int), value :: length, num_ranks
+      integer(c_int), intent(in) :: first(num_ranks + 1)
+      real(c_double), intent(in) :: own(length)
+      ! allow(assumed-size)
+      real(c_double), intent(inout) :: all(*)
+    end subroutine keyway_gather_on_first_rank
+
     function keyway_least_of_ranks(number) result(least) bind(c)
       import :: c_int
       implicit none
@@ -108,7 +120,7 @@ module ranks
 contains
 
   !> Ranks of the run.
-  integer function num_ranks()
+  pure integer function num_ranks()
     num_ranks = int(keyway_num_ranks())
   end function num_ranks
 
@@ -118,12 +130,12 @@ contains
   end function num_ranks_here
 
   !> Number of this rank, from 0.
-  integer function this_rank()
+  pure integer function this_rank()
     this_rank = int(keyway_this_rank())
   end function this_rank
 
   !> Whether this rank prints and writes.
-  logical function is_first_rank()
+  pure logical function is_first_rank()
     is_first_rank = keyway_this_rank() == 0
   end function is_first_rank
 
@@ -152,6 +164,15 @@ contains
     call keyway_gather_rows(own, all, int(size(first) - 1, c_int), int(first, c_int))
   end subroutine gather_rows
 
+  !> Puts the numbers of all ranks together, on the first rank.
+  subroutine gather_on_first_rank(own, first, all)
+    real(rk), contiguous, intent(in) :: own(:) !< of this rank
+    integer, intent(in) :: first(:) !< (ranks + 1) from 0; used on the first rank
+    real(rk), contiguous, intent(inout) :: all(:) !< there; unchanged on the others
+    call keyway_gather_on_first_rank(own, int(size(own), c_int), all, &
+                                     int(size(first) - 1, c_int), int(first, c_int))
+  end subroutine gather_on_first_rank
+
   !> Whether something holds on all ranks.
   logical function is_true_everywhere(holds)
     logical, intent(in) :: holds
@@ -175,44 +196,38 @@ contains
   subroutine share_error(error)
     type(error_type), allocatable, intent(inout) :: error
     character(:), allocatable :: text
-    integer(c_int) :: rank, head(2)
+    integer(c_int) :: rank
+    integer :: code
     if (keyway_num_ranks() == 1) return
     if (keyway_wait_for_ranks(merge(patience, 0_c_int, allocated(error))) == 0) return
     rank = keyway_this_rank()
     if (.not. allocated(error)) rank = keyway_num_ranks()
     rank = keyway_least_of_ranks(rank)
     if (rank == keyway_num_ranks()) return
-    head = 0_c_int
-    if (rank == keyway_this_rank()) head = int([error%exit_code, len(error%message)], c_int)
-    head(1) = int(largest_of_ranks(int(head(1))), c_int)
-    head(2) = int(largest_of_ranks(int(head(2))), c_int)
-    text = repeat(' ', head(2))
-    if (rank == keyway_this_rank()) text = error%message
-    text = text_of_rank(rank, text)
-    if (.not. allocated(error)) call raise(error, text, int(head(1)))
+    text = ''
+    code = 0
+    if (allocated(error)) then
+      text = error%message
+      if (rank == keyway_this_rank()) code = error%exit_code
+    end if
+    code = largest_of_ranks(code)
+    text = text_of_rank(int(rank), text)
+    if (.not. allocated(error)) call raise(error, text, code)
   end subroutine share_error
-
-  !> The text of the first rank, on all ranks.
-  function text_of_first_rank(own) result(text)
-    character(*), intent(in) :: own
-    character(:), allocatable :: text
-    text = repeat(' ', number_of_first_rank(len(own)))
-    if (is_first_rank()) text = own
-    text = text_of_rank(0_c_int, text)
-  end function text_of_first_rank
 
   !> The text of one rank, on all ranks.
   function text_of_rank(rank, own) result(text)
-    integer(c_int), intent(in) :: rank
-    character(*), intent(in) :: own !< of one length on all ranks
-    character(len(own)) :: text
-    character(kind=c_char) :: letters(len(own))
-    integer :: i
-    do i = 1, len(own)
-      letters(i) = own(i:i)
-    end do
-    call keyway_share_text(rank, letters, int(len(own), c_int))
-    do i = 1, len(own)
+    integer, intent(in) :: rank
+    character(*), intent(in) :: own !< used on that rank
+    character(:), allocatable :: text
+    character(kind=c_char), allocatable :: letters(:)
+    integer :: length, i
+    length = largest_of_ranks(merge(len(own), 0, rank == this_rank()))
+    allocate (character(length) :: text)
+    allocate (letters(length), source=' ')
+    if (rank == this_rank()) letters = [(own(i:i), i=1, length)]
+    call keyway_share_text(int(rank, c_int), letters, int(length, c_int))
+    do i = 1, length
       text(i:i) = letters(i)
     end do
   end function text_of_rank
