@@ -93,7 +93,12 @@ contains
     integer :: i
     do i = 1, size(answers)
       answers(i)%takes_part(:) = .true.
-      if (model%inelastic(i)%is_here()) call sum_block(model%inelastic(i), points(i), answers(i))
+      if (.not. model%inelastic(i)%is_here()) cycle
+      if (element_is_there(model%mesh, model%inelastic(i)%elements(1))) then
+        call sum_block(model%inelastic(i), points(i), answers(i))
+      else
+        call leave_out(answers(i))
+      end if
     end do
   end subroutine recall_points
 
@@ -115,13 +120,21 @@ contains
       allocate (answer%tangent(6, 6, num_tangents))
     end if
     if (.not. element_is_there(model%mesh, part%elements(1))) then ! all of the block are absent
-      call sum_block(part, new, answer)
+      call leave_out(answer)
       return
     end if
     call move_points(model, part, u, origin, answer%takes_part, new)
     call call_law(model, part, time, old, new, answer)
     call sum_block(part, new, answer)
   end subroutine update_block
+
+  !> An absent block has no forces, and its law gives no tangents, also where the law is never
+  !> elastic (UMAT).
+  pure subroutine leave_out(answer)
+    type(block_answer), intent(inout) :: answer
+    answer%has_excess = .false.
+    answer%force = 0.0_rk
+  end subroutine leave_out
 
   !> Calls the law of a block for the elements that take part.
   subroutine call_law(model, part, time, old, new, answer)

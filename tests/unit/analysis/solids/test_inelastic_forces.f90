@@ -40,6 +40,7 @@ program test_inelastic_forces
   call secant_gives_excess_force(log)
   call threads_do_not_matter(log)
   call states_are_recalled(log)
+  call absent_blocks_release_nothing(log)
   call failure_names_the_point(log)
   write (*, '(i0,a,i0,a)') log%passed, ' passed, ', log%failed, ' failed'
   if (log%failed > 0) error stop 1
@@ -169,6 +170,34 @@ contains
                      1.0e-12_rk*abs(total%stored), 'stored energy')
     call check(log, total%fracture > 0.0_rk .and. total%crushing <= 0.0_rk, 'dissipated')
   end subroutine states_are_recalled
+
+  !> A block that is absent has neither forces nor tangents, also where its law says that it is not
+  !> elastic, as a UMAT does.
+  subroutine absent_blocks_release_nothing(log)
+    type(test_log), intent(inout) :: log
+    type(problem) :: apart
+    type(block_answer), allocatable :: others(:)
+    type(point_state) :: states(size(old))
+    real(rk), allocatable :: no_origin(:, :)
+    real(rk) :: u(3, model%mesh%num_nodes)
+    integer :: i
+    apart = model
+    states = new
+    do i = 1, size(states)
+      states(i)%is_elastic(:) = .false.
+    end do
+    allocate (apart%mesh%is_absent(num_boxes), source=.false.)
+    apart%mesh%is_absent(apart%inelastic(1)%elements) = .true.
+    call open_answers(apart%inelastic, others)
+    call recall_points(apart, states, others)
+    call check(log,.not. any(others(1)%has_excess), 'nothing is recalled of an absent block')
+    call check(log, any(others(2)%has_excess), 'the others are recalled')
+    call numbers%expand(field(3.0e-4_rk), u)
+    call update_points(apart, u, no_origin, time_increment(tangent=consistent_tangent), old, &
+                       states, others)
+    call check(log,.not. any(others(1)%has_excess), 'an absent block has no tangents')
+    call check(log, all(abs(others(1)%force) <= 0.0_rk), 'an absent block has no forces')
+  end subroutine absent_blocks_release_nothing
 
   subroutine failure_names_the_point(log)
     type(test_log), intent(inout) :: log
