@@ -12,7 +12,7 @@ module inelastic_blocks
   use guest_type, only: guest
   use material_law, only: material
   use material_points, only: point_set, point_state, stored_energy, fracture_energy, &
-                             crushing_energy
+                             crushing_energy, make_room
   use ranks, only: this_rank
   use shape_hex8, only: edges_at, hex8_dofs, shape_at
   use slope_products, only: add_forces_of_stress, find_symmetric_gradient
@@ -193,9 +193,7 @@ contains
     integer :: e, q, p, n
     n = part%points_of_element*size(id)
     associate (points => part%points)
-      points%num_points = n
-      allocate (points%element(n), points%number(n), points%x(3, n), points%edges(3, 3, n), &
-                points%widest(n), points%length(n))
+      call make_room(points, n)
       do e = 1, size(id)
         do q = 1, part%points_of_element
           p = (e - 1)*part%points_of_element + q
@@ -227,17 +225,10 @@ contains
   !> Frees the tables of points that are on another rank.
   pure subroutine forget_points(self)
     class(inelastic_block), intent(inout) :: self
-    type(point_set) :: none
     if (allocated(self%slope)) deallocate (self%slope)
     if (allocated(self%b)) deallocate (self%b)
     self%weight = reshape([real(rk) ::], [self%points_of_element, 0])
-    none%element = [integer ::]
-    none%number = [integer ::]
-    none%x = reshape([real(rk) ::], [3, 0])
-    none%edges = reshape([real(rk) ::], [3, 3, 0])
-    none%widest = [real(rk) ::]
-    none%length = [real(rk) ::]
-    self%points = none
+    call make_room(self%points, 0)
   end subroutine forget_points
 
   !> Energies of the points that have yielded or cracked; all others contribute nothing. Points of

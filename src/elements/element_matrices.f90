@@ -8,7 +8,7 @@ module element_matrices
   use shape_hex8, only: hex8_dofs, point_shape
   implicit none
   private
-  public :: stiffness_matrices, consistent_masses, nodal_volumes, strains_at_points, stress_forces
+  public :: stiffness_matrices, consistent_masses, nodal_volumes, stress_forces
 
   !> Elements whose operators fit into the first-level cache (tools/bench/bench_elements).
   integer, parameter :: chunk = 4
@@ -150,17 +150,6 @@ contains
       end do
     end do
   end subroutine nodal_volumes
-
-  !> eps = B u at the points of each element.
-  pure subroutine strains_at_points(b, u, strain)
-    real(rk), contiguous, intent(in) :: b(:, :, :, :) !< (6, 24, points, elements) [1/m]
-    real(rk), contiguous, intent(in) :: u(:, :) !< (24, elements) [m]
-    real(rk), contiguous, intent(out) :: strain(:, :, :) !< (6, points, elements)
-    integer :: e
-    do e = 1, size(b, 4)
-      call strains_of_element(b(:, :, :, e), u(:, e), strain(:, :, e))
-    end do
-  end subroutine strains_at_points
 
   !> f = sum w B^T sigma of each element (without hourglass forces).
   pure subroutine stress_forces(b, weight, stress, force)

@@ -13,6 +13,12 @@ from rank_decks import BlockOnRock
 from test_ranks import worst_difference
 
 
+def without_modes(deck: str) -> str:
+    """A deck of the Jinping dam without its step of natural modes."""
+    before, modes = deck.split("*STEP, NAME=MODES\n")
+    return before + modes.split("*END STEP\n", maxsplit=1)[1]
+
+
 def cracking_dam(folder: Path) -> str:
     """Jinping with 15 000 unknowns, the law of table 1 and 30 increments of motion; it cracks under
     its weight already.
@@ -22,8 +28,7 @@ def cracking_dam(folder: Path) -> str:
     assert make_jinping.main([str(path), *sizes]) == 0
     mesh = (folder / "jinping_mesh.inp").read_text()
     deck = path.read_text().replace("*INCLUDE, INPUT=jinping_mesh.inp\n", mesh)
-    before, modes = deck.split("*STEP, NAME=MODES\n")
-    deck = before + modes.split("*END STEP\n", maxsplit=1)[1]
+    deck = without_modes(deck)
     deck = re.sub(r"INPUT=\S*/xingbiling/", f"INPUT={ROOT}/input/xingbiling/", deck)
     return deck.replace("PRECISION=MIXED", "PRECISION=DOUBLE")
 
@@ -75,8 +80,7 @@ def test_cracks_and_sliding_by_conjugate_gradients(keyway, on_ranks, tmp_path):
     """
     path = tmp_path / "jinping.inp"
     assert make_jinping.main([str(path), "--duration", "0.3", "--increment", "0.01"]) == 0
-    before, modes = path.read_text().split("*STEP, NAME=MODES\n")
-    path.write_text(before + modes.split("*END STEP\n", maxsplit=1)[1])
+    path.write_text(without_modes(path.read_text()))
     plain, divided = keyway(path, "-j", "2"), on_ranks(2)(path, "--solver", "ITERATIVE")
     assert divided.json["steps"][-1]["cutbacks"] == plain.json["steps"][-1]["cutbacks"] == 0
     old, new = (run.json["joints"]["JOINT3"]["slip"]["anywhere"] for run in (plain, divided))

@@ -79,7 +79,7 @@ contains
   pure subroutine copy_heat(from, to)
     type(point_state), intent(in) :: from
     type(point_state), intent(inout) :: to
-    if (.not. allocated(from%temperature)) return ! points of another rank
+    if (from%is_elsewhere()) return
     to%temperature = from%temperature
     if (allocated(from%thermal)) to%thermal = from%thermal
   end subroutine copy_heat
@@ -148,7 +148,7 @@ contains
     if (.not. allocated(now%heat%temperature)) return
     !$omp parallel do schedule(dynamic) default(none) shared(model, now)
     do i = 1, size(now%points)
-      if (size(now%points(i)%is_elastic) == 0) cycle ! those of another rank
+      if (now%points(i)%is_elsewhere()) cycle
       call heat_block(model, model%inelastic(i), now%heat, now%points(i))
     end do
     !$omp end parallel do

@@ -78,43 +78,54 @@ contains
     end do
   end subroutine gather_points
 
-  !> Gives the states of some blocks to the first rank, which has its own ones.
+  !> Gives the states of some blocks to the first rank, which has its own ones. A rank has no
+  !> numbers of blocks that are elsewhere.
   subroutine gather_batch(blocks, states)
     type(inelastic_block), intent(in) :: blocks(:)
     type(point_state), intent(inout) :: states(:) !< (blocks)
-    real(rk), allocatable :: own(:), all(:)
-    integer :: start(num_ranks() + 1), next(0:num_ranks() - 1), i, n, last
-    start = 0
+    real(rk), allocatable :: sent(:), received(:)
+    integer :: first(num_ranks() + 1), next(0:num_ranks() - 1), i, last
     next = 0
     do i = 1, size(blocks)
-      if (blocks(i)%rank == 0) cycle
-      if (blocks(i)%is_here() .or. is_first_rank()) then
-        next(blocks(i)%rank) = next(blocks(i)%rank) + num_values(states(i))
-      end if
+      associate (rank => blocks(i)%rank)
+        if (rank > 0) next(rank) = next(rank) + num_values(states(i))
+      end associate
     end do
+    first(1) = 0
     do i = 1, num_ranks()
-      start(i + 1) = start(i) + next(i - 1)
+      first(i + 1) = first(i) + next(i - 1)
     end do
-    allocate (own(merge(0, next(this_rank()), is_first_rank())))
-    allocate (all(merge(start(num_ranks() + 1), 0, is_first_rank())))
-    last = 0
-    do i = 1, size(blocks)
-      if (is_first_rank() .or. .not. blocks(i)%is_here()) cycle
-      n = num_values(states(i))
-      call pack_block(states(i), own(last + 1:last + n))
-      last = last + n
-    end do
-    call gather_on_first_rank(own, start, all)
+    next = first(:num_ranks())
+    if (.not. is_first_rank()) then
+      allocate (sent(first(num_ranks() + 1)), received(0))
+      call pack_blocks(states, sent)
+    else
+      allocate (sent(0), received(first(num_ranks() + 1)))
+    end if
+    call gather_on_first_rank(sent, first, received)
     if (.not. is_first_rank()) return
-    next = start(:num_ranks())
     do i = 1, size(blocks)
-      if (blocks(i)%rank == 0) cycle
-      n = num_values(states(i))
-      last = next(blocks(i)%rank)
-      call unpack_block(all(last + 1:last + n), states(i))
-      next(blocks(i)%rank) = last + n
+      associate (rank => blocks(i)%rank)
+        if (rank == 0) cycle
+        last = next(rank) + num_values(states(i))
+        call unpack_block(received(next(rank) + 1:last), states(i))
+        next(rank) = last
+      end associate
     end do
   end subroutine gather_batch
+
+  !> Writes the numbers of the blocks that this rank has, one after the other.
+  subroutine pack_blocks(states, values)
+    type(point_state), intent(in) :: states(:) !< (blocks)
+    real(rk), intent(out) :: values(:)
+    integer :: i, last, n
+    last = 0
+    do i = 1, size(states)
+      n = num_values(states(i))
+      if (n > 0) call pack_block(states(i), values(last + 1:last + n))
+      last = last + n
+    end do
+  end subroutine pack_blocks
 
   !> Numbers of a block that are exchanged. The first rank finds temperatures and thermal strains
   !> for itself.

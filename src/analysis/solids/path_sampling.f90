@@ -4,8 +4,8 @@ module path_sampling
   use kinds, only: rk
   use inelastic_blocks, only: inelastic_block
   use material_law, only: stress_law
-  use material_points, only: crushing_energy, fracture_energy, no_tangent, point_set, point_state, &
-                             time_increment, update_report
+  use material_points, only: crushing_energy, fracture_energy, make_room, no_tangent, point_set, &
+                             point_state, time_increment, update_report
   use path_errors, only: path_error
   use path_twins, only: gather_points, twin_points
   use problem_definition, only: problem
@@ -176,9 +176,7 @@ contains
     type(point_set), intent(out) :: place
     integer :: i, n
     n = twins%num_twins()
-    place%num_points = n
-    allocate (place%element(n), place%number(n), place%x(3, n), place%edges(3, 3, n), &
-              place%widest(n), place%length(n))
+    call make_room(place, n)
     do i = 1, n
       associate (from => parts(twins%block(i))%points, p => twins%point(i))
         place%element(i) = from%element(p)

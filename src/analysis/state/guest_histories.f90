@@ -6,7 +6,6 @@ module guest_histories
   use problem_definition, only: problem
   use analysis_state, only: state
   use kinds, only: rk
-  use material_points, only: point_state
   use ranks, only: add_over_ranks, num_ranks
   implicit none
   private
@@ -39,7 +38,7 @@ contains
     n = size(now%joints)
     do i = 1, size(now%points)
       list(n + i)%kind = 'points'
-      if (.not. is_elsewhere(now%points(i))) list(n + i)%own => now%points(i)
+      if (.not. now%points(i)%is_elsewhere()) list(n + i)%own => now%points(i)
       list(n + i)%number = i
       if (present(model)) list(n + i)%owner => model%inelastic(i)
     end do
@@ -51,13 +50,6 @@ contains
       if (present(model)) list(n + i)%owner => model%guests(i)%item
     end do
   end subroutine list_histories
-
-  !> Whether another rank alone has the points of a block.
-  pure logical function is_elsewhere(own)
-    type(point_state), intent(in) :: own
-    is_elsewhere = .false.
-    if (allocated(own%is_elastic)) is_elsewhere = size(own%is_elastic) == 0
-  end function is_elsewhere
 
   !> The histories of guests at the start of an analysis.
   subroutine start_histories(model, histories)

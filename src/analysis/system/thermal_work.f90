@@ -30,16 +30,13 @@ contains
       elastic = new%thermal_energy - old%thermal_energy &
                 - 0.5_rk*dot(old%q + new%q, new%thermal - old%thermal)
     end associate
-    lost = 0.0_rk
     allocate (of_block(size(after%points)), source=0.0_rk)
     do i = 1, size(after%points)
       if (.not. (allocated(after%points(i)%thermal) .and. model%inelastic(i)%is_here())) cycle
       of_block(i) = lost_work(model%inelastic(i), before%points(i), after%points(i))
     end do
     call add_over_ranks(of_block)
-    do i = 1, size(of_block)
-      lost = lost + of_block(i)
-    end do
+    lost = sum(of_block)
     after%energy%temperature = after%energy%temperature + elastic + lost
     after%energy%numerical = after%energy%numerical + lost
     after%energy%largest = max(after%energy%largest, abs(after%motion%thermal_energy))

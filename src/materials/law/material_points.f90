@@ -5,7 +5,7 @@ module material_points
   use kinds, only: rk
   implicit none
   private
-  public :: point_set, point_state, time_increment, update_report
+  public :: point_set, point_state, time_increment, update_report, make_room
   public :: no_tangent, secant_tangent, consistent_tangent
   public :: stored_energy, fracture_energy, crushing_energy, created_energy, num_energies
 
@@ -51,6 +51,7 @@ module material_points
     !> (6, points) thermal strain, which `strain` does not hold; where the material expands
     real(rk), allocatable :: thermal(:, :)
   contains
+    procedure :: is_elsewhere
     procedure :: save => save_points
     procedure :: load => load_points
   end type point_state
@@ -81,7 +82,24 @@ module material_points
     character(:), allocatable :: message !< why
     real(rk) :: size_ratio = 1.0_rk !< below 1: size that the law requests, over the present size
   end type update_report
+
 contains
+
+  !> Tables of `n` points, without values.
+  pure subroutine make_room(points, n)
+    type(point_set), intent(out) :: points
+    integer, intent(in) :: n
+    points%num_points = n
+    allocate (points%element(n), points%number(n), points%x(3, n), points%edges(3, 3, n), &
+              points%widest(n), points%length(n))
+  end subroutine make_room
+
+  !> Whether another rank alone has the points of the block: a block has one at least.
+  pure logical function is_elsewhere(self)
+    class(point_state), intent(in) :: self
+    is_elsewhere = .false.
+    if (allocated(self%is_elastic)) is_elsewhere = size(self%is_elastic) == 0
+  end function is_elsewhere
 
   !> Writes the points of one block into the present group.
   subroutine save_points(self, file)

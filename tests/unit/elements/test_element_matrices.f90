@@ -1,9 +1,9 @@
 !> All solids: patch test, rigid motions, zero eigenvalues, wedges, volumes, bending, locking.
 program test_element_matrices
   use element_catalogue, only: element_kinds, find_element_kind, is_solid, make_solid
-  use element_formulation, only: solid_element
+  use element_formulation, only: solid_element, strains_of_element
   use element_matrices, only: consistent_masses, nodal_volumes, stiffness_matrices, &
-                              strains_at_points, stress_forces
+                              stress_forces
   use hex8_slopes, only: slopes_at_points, strains_of_slopes
   use kinds, only: rk
   use material_elastic, only: elastic_law
@@ -103,7 +103,7 @@ contains
       call element%strain_operator(x, hooke(0.2_rk), b, weight, status)
       call element%find_strains(x(:, :, 1), hooke(0.2_rk), u, strain)
       do i = 1, 2
-        call strains_at_points(b, u(:, i:i), expected)
+        call strains_of_element(b(:, :, :, 1), u(:, i), expected(:, :, 1))
         call check(log, maxval(abs(strain(:, :, i) - expected(:, :, 1))) < &
                    1.0e-12_rk*maxval(abs(expected)), name//': strains without operators')
       end do
@@ -125,7 +125,7 @@ contains
     allocate (b(6, 24, element%num_points, 1), weight(element%num_points, 1))
     allocate (strain(6, element%num_points, 1), stress(6, element%num_points, 1))
     call element%strain_operator(x, hooke(0.2_rk), b, weight, status)
-    call strains_at_points(b, u, strain)
+    call strains_of_element(b(:, :, :, 1), u(:, 1), strain(:, :, 1))
     expected = [1.0_rk, -0.7_rk, 0.6_rk, 0.8_rk, 0.2_rk, 1.0_rk]
     call check(log, status(1) == 0, name//': sound')
     call check_close(log, maxval(abs(strain(:, :, 1) - spread(expected, 2, element%num_points))), &
@@ -166,7 +166,9 @@ contains
     call check_close(log, maxval(abs(fast - general)), 0.0_rk, 1.0e-14_rk*maxval(abs(general)), &
                      'stiffness from slopes')
     call element%strain_operator(x, d, b, weight, status)
-    call strains_at_points(b, u, strain)
+    do e = 1, 2
+      call strains_of_element(b(:, :, :, e), u(:, e), strain(:, :, e))
+    end do
     do e = 1, 2
       call slopes_at_points(x(:, :, e), slope, volume, status(e))
       call strains_of_slopes(slope, u(:, e), found)
