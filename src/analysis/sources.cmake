@@ -62,6 +62,7 @@ set(sources
   state/path_twins.f90
   state/renumbered_motion.f90
   state/motion_archive.f90
+  state/motion_parts.f90
   state/energy_archive.f90
   state/state_archive.f90
   state/state_transfer.f90

@@ -12,6 +12,7 @@ module divided_run
   use file_system, only: base_name
   use increment_listener, only: listener
   use initial_state, only: start_analysis
+  use node_parts, only: divide_nodes
   use omp_lib, only: omp_get_num_procs
   use problem_definition, only: problem
   use rank_balance, only: balance_of_ranks, gather_balance
@@ -64,6 +65,7 @@ contains
     if (.not. allocated(error) .and. .not. options%is_check) then
       call divide_elements(model%mesh, error)
       if (.not. allocated(error)) call divide_blocks(model%mesh, model%inelastic)
+      if (.not. allocated(error)) call divide_nodes(model)
     end if
     call share_error(error)
   end subroutine divide_problem

@@ -1,8 +1,10 @@
-!> The thermal force of the solids: sum of w B^T D times the thermal strain, and its energy.
+!> The thermal force of the solids: sum of w B^T D times the thermal strain, and its energy. A rank
+!> has those of its elements.
 !>
 !> Threads take pieces of the list of elements; forces and energies are summed in the order of the
 !> elements, so that sums do not depend on the number of threads.
 module assemble_heat
+  use dam_mesh, only: is_assembled_here
   use dof_numbering, only: numbering
   use element_catalogue, only: make_solid
   use element_formulation, only: solid_element
@@ -10,6 +12,7 @@ module assemble_heat
   use kinds, only: rk
   use node_dofs, only: add_vectors, zero_vectors
   use problem_definition, only: problem
+  use ranks, only: this_rank
   use shape_hex8, only: hex8_dofs
   use thermal_strains, only: expands, find_thermal_strains, heat_field
   implicit none
@@ -39,7 +42,8 @@ contains
     integer, allocatable :: elements(:), first(:)
     integer :: e, i
     elements = pack([(e, e=1, model%mesh%num_elements)], &
-                    [(expands(model, e), e=1, model%mesh%num_elements)])
+                    [(is_assembled_here(model%mesh, this_rank(), e) .and. expands(model, e), &
+                      e=1, model%mesh%num_elements)])
     call cut_pieces(model, elements, first)
     allocate (answers%force(hex8_dofs, size(elements)), answers%energy(size(elements)))
     !$omp parallel do schedule(dynamic) default(none) shared(model, heat, elements, first, answers)

@@ -19,14 +19,16 @@ module constraint_elimination
 
 contains
 
-  !> Numbers the unknowns of a step from its elements, its joints, its ties and its supports.
-  subroutine number_step(mesh, joints, guests, fixities, numbers, error)
+  !> Numbers the unknowns of a step from its elements, its joints, its ties and its supports. Where
+  !> vectors are divided: those of the nodes of this rank.
+  subroutine number_step(mesh, joints, guests, fixities, numbers, error, of_all_ranks)
     type(fe_mesh), intent(in) :: mesh
     type(dam_joint), intent(in) :: joints(:)
     type(guest_slot), intent(in) :: guests(:) !< with the ties
     type(step_fixity), intent(in) :: fixities(:)
     type(numbering), intent(out) :: numbers
     type(error_type), allocatable, intent(out) :: error
+    logical, intent(in), optional :: of_all_ranks !< all unknowns, also where vectors are divided
     logical, allocatable :: is_used(:), is_fixed(:, :)
     type(node_tie), allocatable :: ties(:)
     type(nodal_points) :: points
@@ -54,8 +56,16 @@ contains
     call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)
+    if (.not. present(of_all_ranks)) call keep_own(mesh, is_used)
     call number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
   end subroutine number_step
+
+  !> Leaves the nodes of other ranks out, where vectors are divided.
+  pure subroutine keep_own(mesh, is_used)
+    type(fe_mesh), intent(in) :: mesh
+    logical, intent(inout) :: is_used(:) !< (nodes)
+    if (allocated(mesh%is_node_here)) is_used = is_used .and. mesh%is_node_here
+  end subroutine keep_own
 
   !> Marks nodes of joint elements that supports hold in all directions: a base without solids. It
   !> moves as the supports do, and has their reactions. Nodes whose solids are absent are no base.

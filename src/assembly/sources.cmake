@@ -11,7 +11,9 @@ set(sources
   parts/block_parts.f90
   parts/element_parts.f90
   parts/matrix_rows.f90
+  parts/node_parts.f90
   parts/node_sequence.f90
+  parts/part_borders.f90
   parts/undivided_effects.f90
   pattern_builder.f90
   problem_definition.f90

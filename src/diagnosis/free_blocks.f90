@@ -211,7 +211,7 @@ contains
         motion(k) = 1.0_rk
         call move_block(model, task%blocks, b, motion, u)
         call restrict(system%numbers, model%joints, u, q)
-        on_blocks(6*(b - 1) + k) = dot(force, q)
+        on_blocks(6*(b - 1) + k) = dot(system%matrix%part, force, q)
       end do
     end do
     load = matmul(on_blocks, task%free)

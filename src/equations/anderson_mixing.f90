@@ -6,6 +6,7 @@ module anderson_mixing
   use kinds, only: rk
   use global_vectors, only: dot, norm
   use small_matrix, only: solve_dense
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: mixer
@@ -20,6 +21,7 @@ module anderson_mixing
 
   type :: mixer
     integer, allocatable :: rows(:) !< unknowns that change; not allocated: all
+    type(unknown_part) :: part !< own ones of these, where vectors are divided
     logical :: starts_afresh = .false. !< where the change grows
     integer :: num_pairs = 0
     !> (rows, pairs) differences of s and of g(s) - s
@@ -29,11 +31,20 @@ module anderson_mixing
     integer, private :: next = 1 !< column that the next pair overwrites
     integer, private :: age = huge(1) !< iterations since a fresh start, if there was one
   contains
-    procedure :: forget
+    procedure :: forget, choose_rows
     procedure :: advance => mix_iterates
   end type mixer
 
 contains
+
+  !> Chooses the unknowns that change.
+  subroutine choose_rows(self, part, rows)
+    class(mixer), intent(inout) :: self
+    type(unknown_part), intent(in) :: part
+    integer, intent(in) :: rows(:) !< ascending
+    self%rows = rows
+    self%part = part%of_rows(rows)
+  end subroutine choose_rows
 
   !> Discards all pairs.
   subroutine forget(self)
@@ -88,7 +99,7 @@ contains
     type(mixer), intent(inout) :: self
     real(rk), intent(in) :: f(:) !< the present change
     if (.not. (self%starts_afresh .and. allocated(self%last_f))) return
-    if (norm(f) <= norm(self%last_f)) return
+    if (norm(self%part, f) <= norm(self%part, self%last_f)) return
     call self%forget()
     self%age = 0
   end subroutine start_afresh
@@ -108,7 +119,7 @@ contains
     self%df(:, self%next) = f - self%last_f
     self%num_pairs = max(self%num_pairs, self%next)
     do k = 1, self%num_pairs
-      self%gram(k, self%next) = dot(self%df(:, k), self%df(:, self%next))
+      self%gram(k, self%next) = dot(self%part, self%df(:, k), self%df(:, self%next))
       self%gram(self%next, k) = self%gram(k, self%next)
     end do
     self%next = 1 + mod(self%next, most_pairs)
@@ -128,7 +139,7 @@ contains
     gram = self%gram(:self%num_pairs, :self%num_pairs)
     do j = 1, self%num_pairs
       scale(j) = 1.0_rk/max(sqrt(gram(j, j)), tiny(1.0_rk))
-      right(j, 1) = scale(j)*dot(self%df(:, j), f)
+      right(j, 1) = scale(j)*dot(self%part, self%df(:, j), f)
     end do
     do j = 1, self%num_pairs
       gram(:, j) = gram(:, j)*scale*scale(j)

@@ -3,7 +3,6 @@ module column_products
   use global_vectors, only: multiply
   use kinds, only: rk
   use matrix_pattern, only: pattern
-  use ranks, only: add_over_ranks
   use symmetric_product, only: keyway_multiply_eight, keyway_multiply_two
   implicit none
   private
@@ -33,8 +32,8 @@ contains
     y1 = y(1, :)
     y2 = y(2, :)
     if (.not. matrix%is_shared) return
-    call add_over_ranks(y1)
-    call add_over_ranks(y2)
+    call matrix%part%add(y1)
+    call matrix%part%add(y2)
   end subroutine multiply_pair
 
   !> y = A x for each column, over the free unknowns; prescribed ones are zero.

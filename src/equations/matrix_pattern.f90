@@ -6,6 +6,7 @@ module matrix_pattern
   use kinds, only: rk
   use symmetric_product, only: keyway_multiply_one
   use unknown_layout, only: row_layout
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: pattern, position_of, add_block, add_triples, multiply, diagonal, full_pattern
@@ -30,6 +31,7 @@ module matrix_pattern
     integer, allocatable :: alike(:)
     logical :: is_shared = .false. !< values are the part of this rank in a sum over all ranks
     type(row_layout), allocatable :: layout !< of the distributed matrix, where one is shared
+    type(unknown_part) :: part !< unknowns of this rank, where vectors are divided
   end type pattern
 
 contains
@@ -164,6 +166,7 @@ contains
     thin%num_total = matrix%num_total
     thin%num_last = matrix%num_last
     thin%is_shared = matrix%is_shared
+    thin%part = matrix%part
     thin%row = pack(matrix%row, is_kept)
     thin_values = pack(values, is_kept)
     allocate (thin%column_start(matrix%num_total + 1), source=1)
@@ -209,6 +212,7 @@ contains
     full%num_last = lower%num_last
     full%is_symmetric = .false.
     full%is_shared = lower%is_shared
+    full%part = lower%part
     if (allocated(lower%layout)) full%layout = lower%layout
     allocate (full%column_start(lower%num_total + 1), next(lower%num_total))
     allocate (full%row(2*size(lower%row) - lower%num_total))

@@ -1,7 +1,7 @@
 !> Equations whose matrix is a sum over ranks, by PETSc: factors of MUMPS or, for symmetric positive
 !> definite matrices, conjugate gradients.
 !>
-!> Right-hand sides and solutions are whole on every rank; the matrix and its factor are not.
+!> A rank gives its rows of right-hand sides, and gets solutions in all unknowns that it holds.
 module solver_petsc
   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr, c_size_t
   use kinds, only: long, rk
@@ -14,8 +14,10 @@ module solver_petsc
                              is_slow, memory_of_petsc, plan_petsc, rows_of_petsc_patch, &
                              shift_of_petsc, solve_petsc, solve_petsc_patch, start_petsc, &
                              sum_petsc, take_petsc_patch
-  use ranks, only: gather_rows, share_error, this_rank
-  use unknown_layout, only: choose_solver, compressed_solver, direct_solver, own_rows, row_layout
+  use ranks, only: add_over_ranks, gather_rows, num_ranks, share_error, this_rank
+  use unknown_layout, only: choose_solver, compressed_solver, direct_solver, num_rows, own_rows, &
+                            row_layout
+  use unknown_parts, only: unknown_part
   use write_text, only: as_text
   implicit none
   private
@@ -33,6 +35,7 @@ module solver_petsc
     integer(c_int), private :: method = by_cholesky
     integer(c_size_t), private :: num_entries_given = 0
     type(row_layout), private :: layout !< its rows alone
+    type(unknown_part), private :: part !< unknowns of this rank, where vectors are divided
   contains
     procedure :: analyse, factorise, solve
     procedure :: num_entries => num_entries_here
@@ -53,6 +56,7 @@ contains
     call release(self)
     self%layout%first_row = matrix%layout%first_row
     self%layout%row = matrix%layout%row
+    self%part = matrix%part
     bounds = own_rows(self%layout, this_rank())
     self%method = by_lu
     if (matrix%is_symmetric) self%method = method_of(matrix%layout)
@@ -74,7 +78,7 @@ contains
     logical :: is_direct
     is_direct = layout%solver == direct_solver
     if (layout%solver == choose_solver) then
-      is_direct = layout%first_row(size(layout%first_row)) <= most_direct
+      is_direct = num_rows(layout) <= most_direct
     end if
     method = merge(by_cholesky, by_iteration, is_direct)
     if (layout%solver == compressed_solver) method = by_compressed
@@ -92,7 +96,7 @@ contains
     case default
       text = 'conjugate gradients with an incomplete factor and the motions of groups of nodes'
     end select
-    text = as_text(layout%first_row(size(layout%first_row)))//' equations, '//text
+    text = as_text(num_rows(layout))//' equations, '//text
   end function method_text
 
   !> Rows and columns of the entries that this rank adds in the order of `list_values`, of a
@@ -141,27 +145,31 @@ contains
     is_mirrored = matrix%is_symmetric .and. matrix%row(entry) /= column
   end function is_mirrored
 
-  !> The values of the entries of `list_places`.
+  !> The values of the entries of `list_places`. A row without an unknown gets the largest value of
+  !> all ranks.
   subroutine list_values(matrix, values, list)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< of this rank
     real(rk), intent(out) :: list(:)
-    real(rk) :: largest
+    real(rk) :: largest(num_ranks())
     integer :: j, k, n
     n = 0
     largest = 0.0_rk
-    do j = 1, matrix%num_free
-      if (.not. matrix%layout%is_touched(j)) cycle
-      do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
-        largest = max(largest, values(k))
-        n = n + 1
-        list(n) = values(k)
-        if (.not. is_mirrored(matrix, k, j)) cycle
-        n = n + 1
-        list(n) = values(k)
+    associate (own => largest(this_rank() + 1))
+      do j = 1, matrix%num_free
+        if (.not. matrix%layout%is_touched(j)) cycle
+        do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
+          own = max(own, values(k))
+          n = n + 1
+          list(n) = values(k)
+          if (.not. is_mirrored(matrix, k, j)) cycle
+          n = n + 1
+          list(n) = values(k)
+        end do
       end do
-    end do
-    list(n + 1:) = max(largest, tiny(1.0_rk))
+    end associate
+    call add_over_ranks(largest)
+    list(n + 1:) = max(maxval(largest), tiny(1.0_rk))
   end subroutine list_values
 
   !> Sums the matrix over the ranks, and factors it or prepares the iteration.
@@ -174,7 +182,7 @@ contains
     integer(c_int) :: status
     integer :: levels
     self%failed_unknown = 0
-    if (matrix%num_free == 0) return
+    if (num_rows(matrix%layout) == 0) return
     allocate (list(self%num_entries_given))
     call list_values(matrix, values, list)
     status = sum_petsc(self%handle, list)
@@ -198,13 +206,12 @@ contains
     class(petsc_solver), intent(inout) :: self
     real(rk), intent(inout) :: b(:, :) !< (num_free, right-hand sides)
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: own(:, :), all(:)
+    real(rk), allocatable :: own(:, :)
     integer(c_int) :: status, iterations(size(b, 2))
     integer :: bounds(2), j, k
-    if (size(b) == 0) return
+    if (num_rows(self%layout) == 0 .or. size(b, 2) == 0) return
     bounds = own_rows(self%layout, this_rank())
     allocate (own(bounds(2) - bounds(1) + 1, size(b, 2)), source=0.0_rk)
-    allocate (all(self%layout%first_row(size(self%layout%first_row))))
     do k = 1, size(b, 2)
       do j = 1, size(b, 1)
         associate (row => self%layout%row(j))
@@ -222,10 +229,32 @@ contains
     if (status /= is_done) call report_failure(status, maxval(iterations), error)
     if (self%has_failed) return
     do k = 1, size(b, 2)
-      call gather_rows(self%layout%first_row, own(:, k), all)
-      b(:, k) = all(self%layout%row + 1)
+      call spread_rows(self, own(:, k), b(:, k))
     end do
   end subroutine solve
+
+  !> Gives the solution in the own rows to all ranks that hold its unknowns.
+  subroutine spread_rows(self, own, x)
+    class(petsc_solver), intent(in) :: self
+    real(rk), contiguous, intent(in) :: own(:) !< (own rows)
+    real(rk), contiguous, intent(out) :: x(:) !< (num_free)
+    real(rk), allocatable :: all(:)
+    integer :: bounds(2), j
+    if (.not. self%part%is_divided) then
+      allocate (all(num_rows(self%layout)))
+      call gather_rows(self%layout%first_row, own, all)
+      x = all(self%layout%row + 1)
+      return
+    end if
+    bounds = own_rows(self%layout, this_rank())
+    x = 0.0_rk
+    do j = 1, size(x)
+      associate (row => self%layout%row(j))
+        if (row >= bounds(1) .and. row <= bounds(2)) x(j) = own(row - bounds(1) + 1)
+      end associate
+    end do
+    call self%part%add(x)
+  end subroutine spread_rows
 
   !> Mean, least and most iterations of a solve, and the memory of the factor.
   function describe_iterations(self) result(text)
@@ -273,13 +302,13 @@ contains
     integer, allocatable, intent(out) :: unknown(:) !< of each row of the patch, 0 for none
     type(error_type), allocatable, intent(out) :: error
     integer(c_int), allocatable :: row(:)
-    integer(c_int) :: num_rows, status
+    integer(c_int) :: num_found, status
     integer, allocatable :: unknown_of_row(:)
     integer :: j
     status = take_petsc_patch(self%handle, int(layers, c_int), int(most_rows, c_int), &
-                              int(size(seed), c_int), int(self%layout%row(seed), c_int), num_rows)
-    allocate (row(num_rows))
-    if (status == is_done) status = rows_of_petsc_patch(self%handle, num_rows, row)
+                              int(size(seed), c_int), int(self%layout%row(seed), c_int), num_found)
+    allocate (row(num_found))
+    if (status == is_done) status = rows_of_petsc_patch(self%handle, num_found, row)
     if (status /= is_done) then
       call raise(error, 'a part of the matrix near joints could not be factored (not enough '// &
                  'memory?)', system_failed)

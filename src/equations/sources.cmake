@@ -31,13 +31,15 @@ set(sources
   supernodes/subtrees.c
   supernodes/supernodal_solve.c
   unknown_layout.f90
+  unknown_parts.f90
 )
-# What stands behind petsc_equations.f90
+# What stands behind petsc_equations.f90 and arpack.f90
 if(KEYWAY_PETSC)
   list(APPEND sources distributed/iteration/block_matrix.c distributed/iteration/coarse_space.c
        distributed/iteration/incomplete_factor.c distributed/iteration/last_solutions.c
        distributed/iteration/node_groups.c distributed/iteration/two_levels.c
-       distributed/matrix_patch.c distributed/mumps_factor.c distributed/petsc_bridge.c)
+       distributed/matrix_patch.c distributed/mumps_factor.c distributed/petsc_bridge.c
+       spectrum/parallel_arpack.c)
 else()
-  list(APPEND sources distributed/without_petsc.c)
+  list(APPEND sources distributed/without_petsc.c spectrum/serial_arpack.c)
 endif()

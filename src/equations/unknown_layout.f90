@@ -6,7 +6,7 @@ module unknown_layout
   use kinds, only: rk
   implicit none
   private
-  public :: row_layout, own_rows
+  public :: row_layout, own_rows, num_rows
   public :: choose_solver, direct_solver, iterative_solver, compressed_solver
 
   integer, parameter :: choose_solver = 0 !< by the number of rows
@@ -31,4 +31,10 @@ contains
     integer :: bounds(2)
     bounds = [layout%first_row(rank + 1), layout%first_row(rank + 2) - 1]
   end function own_rows
+
+  !> Rows of all ranks.
+  pure integer function num_rows(layout)
+    type(row_layout), intent(in) :: layout
+    num_rows = layout%first_row(size(layout%first_row))
+  end function num_rows
 end module unknown_layout

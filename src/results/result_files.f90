@@ -26,9 +26,11 @@ module result_files
   use file_identity, only: add_path, file_path
   use file_system, only: base_name
   use stop_signals, only: is_asked_to_stop, name_of_signal
+  use checkpoint_moments, only: ends_here, is_checkpoint_due, text_after_modes, text_of_end
   use checkpoint_files, only: list_checkpoint_files, remove_checkpoints, restore_results, &
                               return_to_old
-  use run_checkpoint, only: run_position, load_checkpoint, restart_journals, save_checkpoint
+  use run_checkpoint, only: label_of, load_checkpoint, restart_journals, run_position, &
+                            save_checkpoint
   implicit none
   private
   public :: result_folder
@@ -49,7 +51,8 @@ module result_files
   contains
     procedure :: prepare, load, go_on
     procedure :: open => open_results
-    procedure :: increment_done, increment_dropped, wants_motion, modes_found, weigh_modes
+    procedure :: increment_done, increment_dropped, wants_motion, wants_checkpoint, modes_found
+    procedure :: weigh_modes
     procedure :: finish
     procedure, private :: start_step, keep_or_stop, keep
     procedure, private :: write_increment, write_last, write_envelopes
@@ -194,24 +197,25 @@ contains
     wants_motion = is_asked_to_stop() .or. needs_nodes(model, now, self%record)
   end function wants_motion
 
-  !> Writes a checkpoint where one is due, and ends the run where a signal asks to stop. At the
-  !> start of a step a signal waits for the first increment.
+  logical function wants_checkpoint(self, model, now)
+    class(result_folder), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    wants_checkpoint = is_checkpoint_due(model, now)
+  end function wants_checkpoint
+
+  !> Writes a checkpoint where one is due, and ends the run where a signal asks to stop.
   subroutine keep_or_stop(self, model, now, error)
     class(result_folder), intent(inout) :: self
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     logical :: is_stop
-    if (now%increment == 0) return
-    is_stop = is_asked_to_stop() .and. .not. now%motion%modal%lacks_unknowns()
-    if (now%is_last_of_step .and. now%step == size(model%steps)) is_stop = .false.
-    if (is_stop .or. is_due(now, model%steps(now%step)%checkpoint_frequency)) then
-      call self%keep(model, now, error)
-    end if
-    if (allocated(error) .or. .not. is_stop) return
-    call raise(error, 'stopped by '//name_of_signal()//' after increment '// &
-               as_text(now%increment)//" of step '"//model%steps(now%step)%name//"', time "// &
-               as_text(now%total_time)//'; keyway --continue goes on from here')
+    if (.not. is_checkpoint_due(model, now)) return
+    is_stop = ends_here(model, now, allocated(self%whole_motion))
+    if (.not. (is_stop .or. is_due(now, model%steps(now%step)%checkpoint_frequency))) return
+    call self%keep(model, now, error)
+    if (is_stop .and. .not. allocated(error)) call raise(error, text_of_end(model, now))
   end subroutine keep_or_stop
 
   !> Writes a checkpoint.
@@ -221,9 +225,9 @@ contains
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
     call self%costs%start('write', 'checkpoint', 'output')
-    call save_checkpoint(self%stem, self%num_checkpoints + 1, model, now, self%record, &
-                         self%summary, self%writers, error)
     self%num_checkpoints = self%num_checkpoints + 1
+    call save_checkpoint(label_of(self%stem, self%num_checkpoints), model, now, &
+                         self%record, self%summary, self%writers, error, self%whole_motion)
     self%last_ended = merge(now%step, -1, now%is_last_of_step)
     call self%costs%stop()
   end subroutine keep
@@ -299,11 +303,7 @@ contains
     end do
     call self%summarise(model, error)
     if (allocated(error) .or. step == size(model%steps)) return
-    if (is_asked_to_stop()) then
-      call raise(error, 'stopped by '//name_of_signal()//" after step '"// &
-                 model%steps(step)%name//"'; keyway --continue goes on from the last "// &
-                 'checkpoint, if there is one')
-    end if
+    if (is_asked_to_stop()) call raise(error, text_after_modes(model%steps(step)%name))
   end subroutine modes_found
 
   !> The error of the mesh in each mode.

@@ -2,6 +2,7 @@ set(sources
   checkpoints/checkpoint_faces.f90
   checkpoints/checkpoint_files.f90
   checkpoints/checkpoint_identity.f90
+  checkpoints/checkpoint_moments.f90
   checkpoints/run_checkpoint.f90
   errors/dual_weighting.f90
   errors/extreme_errors.f90

@@ -2,7 +2,7 @@
 module dynamic_step
   use kinds, only: rk
   use errors, only: error_type
-  use global_vectors, only: length, multiply
+  use global_vectors, only: length, multiply, num_free_in_all
   use problem_definition, only: problem
   use step_plan, only: step
   use analysis_state, only: motion, state
@@ -19,6 +19,7 @@ module dynamic_step
   use support_rates, only: find_support_rates
   use energy_account, only: open_account
   use renumbered_motion, only: renumber
+  use matrix_pattern, only: pattern
   use run_ledger, only: ledger
   use motion_goes_on, only: has_same_unknowns, keep_accelerations, keep_joints, unbalanced_force
   use solid_iteration, only: solid_solver
@@ -55,7 +56,7 @@ contains
       call note_modes(plan, system, results)
       call build_loads(model, plan, now%u, system, costs)
     end associate
-    now%num_unknowns = system%matrix%num_free
+    now%num_unknowns = num_free_in_all(system%matrix)
     call start_motion(system%numbers, model%joints, now, has_inertia=.true.)
     call keep_joints(last, plan, system%operator%num_points, now)
     if (.not. now%has_opened_step) call take_unknowns(model, system, now%step, last)
@@ -109,7 +110,7 @@ contains
     call open_account(model, system, now, now%total_time <= 0.0_rk, plan%changes_stage)
     call results%costs%stop()
     if (.not. now%has_opened_step) then
-      call store_motion(system%numbers, now)
+      call store_motion(model%mesh, system%numbers, now)
       call results%report_increment(model, now, error)
       if (allocated(error)) return
     end if
@@ -150,7 +151,7 @@ contains
     logical :: has_changed, goes_on
     when = step_time(is_dynamic=.true., start=now%total_time, duration=plan%duration)
     associate (own => now%motion)
-      goes_on = has_same_unknowns(last, plan, own)
+      goes_on = has_same_unknowns(last, plan, system%matrix%part, own)
       if (goes_on) then
         call resume_uplift(model, system%operator, now%joints, system%groups, costs)
       else
@@ -211,25 +212,27 @@ contains
     type(state), intent(inout) :: now
     type(error_type), allocatable, intent(out) :: error
     real(rk), dimension(size(now%motion%a)) :: change, more
-    associate (own => now%motion, n => system%matrix%num_free)
+    associate (own => now%motion, n => system%matrix%num_free, part => system%matrix%part)
       call multiply(system%matrix, system%mass, own%a, change)
       change = unbalanced_force(own) - unbalanced_force(last) + last%inertia - change
-      if (length(change(:n)) <= round_off*max(length(own%external(:n)), &
-                                              length(own%internal(:n)))) return
+      if (length(part, change(:n)) <= round_off*max(length(part, own%external(:n)), &
+                                                    length(part, own%internal(:n)))) return
       call find_start(model, system, plan, now, change, more, error)
       if (.not. allocated(error)) own%a(:n) = own%a(:n) + more(:n)
     end associate
   end subroutine change_acceleration
 
   !> The largest force in the balance: the reference of the residual [N].
-  real(rk) function largest_force(moving, num_free, joint_weight, dt) result(force)
+  real(rk) function largest_force(moving, matrix, joint_weight, dt) result(force)
     type(motion), intent(in) :: moving
-    integer, intent(in) :: num_free
+    type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: joint_weight !< of the joint forces in the balance
     real(rk), intent(in) :: dt !< [s]
-    force = max(length(moving%external(:num_free)), length(moving%internal(:num_free)), &
-                length(moving%inertia(:num_free)), length(moving%viscous(:num_free)), &
-                joint_weight*length(moving%contact(:num_free)), &
-                stopping_share*length(moving%momentum(:num_free))/dt)
+    associate (n => matrix%num_free, part => matrix%part)
+      force = max(length(part, moving%external(:n)), length(part, moving%internal(:n)), &
+                  length(part, moving%inertia(:n)), length(part, moving%viscous(:n)), &
+                  joint_weight*length(part, moving%contact(:n)), &
+                  stopping_share*length(part, moving%momentum(:n))/dt)
+    end associate
   end function largest_force
 end module dynamic_step

@@ -12,7 +12,9 @@ module frequency_integrator
   use step_loads, only: step_time
   use step_system, only: build_structure, build_inertia
   use eigen_modes, only: find_modes
+  use global_vectors, only: num_free_in_all
   use integrator_type, only: integrator
+  use node_parts, only: gather_field
   implicit none
   private
   public :: make_frequency
@@ -45,7 +47,7 @@ contains
       call build_inertia(model, plan, self%system, results%costs, error)
     end if
     if (allocated(error)) return
-    now%num_unknowns = self%system%matrix%num_free
+    now%num_unknowns = num_free_in_all(self%system%matrix)
   end subroutine open_step
 
   !> A frequency step has no increments.
@@ -72,6 +74,7 @@ contains
     type(linear_equilibrium) :: balance
     type(vibration_mode), allocatable :: modes(:)
     real(rk), allocatable :: closed(:)
+    integer :: k
     associate (system => self%system)
       call factorise_closed(model, system, results%costs, closed, balance, error)
       if (allocated(error)) return
@@ -81,6 +84,9 @@ contains
       call results%costs%stop()
     end associate
     if (allocated(error)) return
+    do k = 1, size(modes)
+      call gather_field(model%mesh, modes(k)%shape)
+    end do
     now%is_last_of_step = .true.
     call results%report_modes(model, now%step, modes, error)
   end subroutine report_modes

@@ -44,13 +44,16 @@ contains
         if (allocated(error) .or. .not. outcome%has_converged) return
         call correct(system, scheme, solids, task, before, after)
         ! With reactions: displaced supports may be the only load of the dam.
-        after%largest_force = max(task%balance%reference_force, length(new%internal), &
-                                  task%reference_force, roundoff_share*length(system%diagonal &
-                                                                              *new%q), &
-                                  largest_force(new, n, scheme%joint_weight, scheme%dt))
+        associate (part => system%matrix%part)
+          after%largest_force = max(task%balance%reference_force, task%reference_force, &
+                                    length(part, new%internal), &
+                                    roundoff_share*length(part, system%diagonal*new%q), &
+                                    largest_force(new, system%matrix, scheme%joint_weight, &
+                                                  scheme%dt))
+        end associate
         residual = new%balanced(:n) - new%inertia(:n)
         if (allocated(old%residual)) residual = residual + old%residual
-        call task%check_balance(residual, after%largest_force, outcome)
+        call task%check_balance(system%matrix%part, residual, after%largest_force, outcome)
         if (.not. task%is_refined) exit
       end do
       if (solids%has_inelastic() .or. solids%solver%controls%precision /= 'DOUBLE') then
@@ -86,29 +89,32 @@ contains
       end if
       call task%balance%set_jumps(system%operator, task%start, before%joints)
       task%balance%guess = task%balance%guess + scheme%dt*old%jump_rate
-      task%balance%reference_force = largest_force(old, n, scheme%joint_weight, scheme%dt)
+      task%balance%reference_force = largest_force(old, system%matrix, scheme%joint_weight, &
+                                                   scheme%dt)
       allocate (task%x(system%matrix%num_total))
       if (self%solids%has_inelastic()) then
         task%reference_force = max(task%balance%reference_force, before%largest_force, &
-                                   length(new%external(:n)))
+                                   length(system%matrix%part, new%external(:n)))
         ! v1 by (7.2) with u1 = task%start + x
         task%velocity_of_x = scheme%velocity_of_x
         task%velocity = old%v + (1.0_rk - scheme%gamma)*scheme%dt*old%a + scheme%velocity_of_x &
                         *(moved - scheme%dt*old%v - scheme%dt**2*(0.5_rk - scheme%beta)*old%a)
         if (allocated(task%support_v)) task%velocity(n + 1:) = task%support_v(n + 1:)
-        task%predicted = predict(scheme, old, n)
+        task%predicted = predict(scheme, old, system%matrix)
       end if
     end associate
   end subroutine pose_task
 
   !> Newmark's displacements (7.1) of an increment that ends with the expected acceleration.
-  function predict(scheme, old, n) result(x)
+  function predict(scheme, old, matrix) result(x)
     type(hht), intent(in) :: scheme
     type(motion), intent(in) :: old
-    integer, intent(in) :: n !< free unknowns
-    real(rk) :: x(n) !< [m]
-    x = scheme%dt*old%v(:n) + scheme%dt**2*((0.5_rk - scheme%beta)*old%a(:n) &
-                                            + scheme%beta*expected_acceleration(old, n))
+    type(pattern), intent(in) :: matrix
+    real(rk) :: x(matrix%num_free) !< [m]
+    associate (n => matrix%num_free)
+      x = scheme%dt*old%v(:n) + scheme%dt**2*((0.5_rk - scheme%beta)*old%a(:n) &
+                                              + scheme%beta*expected_acceleration(old, matrix))
+    end associate
   end function predict
 
   !> Rates of the supports at the end, and forces by what Newmark's formulas make of them beyond.
@@ -190,7 +196,7 @@ contains
                n => system%matrix%num_free)
       new%q = task%start + task%x
       call newmark_rates(scheme, old, new%q - old%q, new%v, new%a)
-      if (solids%has_inelastic()) call find_trend(old, new, n)
+      if (solids%has_inelastic()) call find_trend(old, new, system%matrix)
       if (allocated(task%support_a)) new%a(n + 1:) = task%support_a(n + 1:)
       call multiply(system%mass_pattern, system%mass_entries, new%a, new%inertia)
       new%momentum = old%momentum + rest*old%inertia + scheme%gamma*dt*new%inertia

@@ -27,9 +27,13 @@ module hht_integrator
   use state_transfer, only: store_motion
   use opening_error, only: count_broken, error_of_opening, mesh_error_of_opening, note_opening, &
                            rocks
-  use time_error, only: error_modes, is_worth_its_cost, make_error_modes, note_largest, &
+  use time_error, only: error_modes, make_error_modes, note_largest, &
                         note_lost_forces, start_mesh_error, start_modal_error, take_modal_error
   use integrator_type, only: integrator
+  use matrix_pattern, only: pattern
+  use node_parts, only: gather_field
+  use ranks, only: is_first_rank
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: make_hht
@@ -81,8 +85,7 @@ contains
     if (allocated(error)) return
     call start_rates(self%system, now)
     self%has_active_part = self%solids%has_inelastic() .and. .not. has_histories(now%guests)
-    if (self%solids%has_inelastic() .or. .not. plan%controls%estimates_errors) return
-    if (.not. is_worth_its_cost(plan)) return
+    if (self%solids%has_inelastic() .or. .not. plan%estimates_by_modes()) return
     call results%costs%start('estimate', 'time', 'output')
     call make_error_modes(model, self%system, self%solids%solver, self%modes)
     if (allocated(self%modes%square)) call follow_modes(self, model, plan, now)
@@ -119,15 +122,18 @@ contains
     type(problem), intent(in) :: model
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
-    real(rk), allocatable :: shape(:, :, :), q(:), stiffening(:)
+    real(rk), allocatable :: shape(:, :, :), field(:, :), q(:), stiffening(:)
     integer :: k
     call results%costs%start('estimate', 'mesh', 'output')
     associate (modes => self%modes, numbers => self%system%numbers)
-      allocate (shape(3, numbers%num_nodes, size(modes%square)))
+      allocate (shape(3, merge(numbers%num_nodes, 0, is_first_rank()), size(modes%square)))
       allocate (q(numbers%num_total), source=0.0_rk)
+      allocate (field(3, numbers%num_nodes))
       do k = 1, size(modes%square)
         q(:size(modes%shape, 1)) = modes%shape(:, k)
-        call numbers%expand(q, shape(:, :, k))
+        call numbers%expand(q, field)
+        call gather_field(model%mesh, field)
+        if (is_first_rank()) shape(:, :, k) = field
       end do
       call results%stiffening_of_modes(model, shape, stiffening)
       if (allocated(stiffening)) call start_mesh_error(modes, stiffening, now%timing)
@@ -145,13 +151,13 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: moved(:)
     real(rk) :: slopes(size(now%motion%q))
-    call store_motion(self%system%numbers, now)
+    call store_motion(model%mesh, self%system%numbers, now)
     if (.not. allocated(self%modes%square)) return
     call results%costs%start('estimate', 'time', 'output')
     associate (own => now%timing)
       call find_slopes(model, self%system, when, slopes)
       call take_modal_error(self%modes, self%scheme%dt, now%motion, slopes, own, moved)
-      call note_largest(self%system%numbers, self%modes, now%u, own)
+      call note_largest(model%mesh, self%system%numbers, self%modes, now%u, own)
       results%time_error = [own%largest, abs(own%at_largest), &
                             own%most/max(tiny(1.0_rk), own%motion)]
       results%mesh_error = -1.0_rk
@@ -277,10 +283,11 @@ contains
     if (allocated(error) .or. .not. outcome%has_converged) return
     after%joint_condition = max(after%joint_condition, self%solids%solver%condition)
     call results%costs%start('recover', 'energy', 'solver')
-    excess = newmark_excess(self%scheme, before%motion, after%motion, self%system%matrix%num_free)
+    excess = newmark_excess(self%scheme, self%system%matrix, before%motion, after%motion)
     if (has_moving_supports(self%system)) then
       after%energy%external = after%energy%external &
-                              + kinetic_excess(before%motion, after%motion) - excess
+                              + kinetic_excess(self%system%matrix%part, before%motion, &
+                                               after%motion) - excess
     end if
     call add_dynamic_work(model, self%system, before, after, excess)
     call results%costs%stop()
@@ -288,23 +295,26 @@ contains
 
   !> Change of the kinetic energy beyond du . M a_mean in free unknowns (7.4). Supports have a part
   !> only where they move, and then other rates than those of Newmark's formulas.
-  real(rk) function newmark_excess(scheme, old, new, n) result(excess)
+  real(rk) function newmark_excess(scheme, matrix, old, new) result(excess)
     type(hht), intent(in) :: scheme
+    type(pattern), intent(in) :: matrix
     type(motion), intent(in) :: old, new
-    integer, intent(in) :: n !< free unknowns
     real(rk) :: du_dma, da_ma, da_dma
-    du_dma = dot(new%q(:n) - old%q(:n), new%inertia(:n) - old%inertia(:n))
-    da_ma = work(new%a(:n) - old%a(:n), old%inertia(:n), new%inertia(:n))
-    da_dma = dot(new%a(:n) - old%a(:n), new%inertia(:n) - old%inertia(:n))
+    associate (n => matrix%num_free, part => matrix%part)
+      du_dma = dot(part, new%q(:n) - old%q(:n), new%inertia(:n) - old%inertia(:n))
+      da_ma = work(part, new%a(:n) - old%a(:n), old%inertia(:n), new%inertia(:n))
+      da_dma = dot(part, new%a(:n) - old%a(:n), new%inertia(:n) - old%inertia(:n))
+    end associate
     associate (g => scheme%gamma - 0.5_rk, b => scheme%beta - 0.5_rk*scheme%gamma)
       excess = g*du_dma - b*scheme%dt**2*(da_ma + g*da_dma)
     end associate
   end function newmark_excess
 
   !> Change of the kinetic energy beyond du . M a_mean, from its values.
-  real(rk) function kinetic_excess(old, new) result(excess)
+  real(rk) function kinetic_excess(part, old, new) result(excess)
+    type(unknown_part), intent(in) :: part
     type(motion), intent(in) :: old, new
-    excess = 0.5_rk*(dot(new%v, new%momentum) - dot(old%v, old%momentum)) &
-             - work(new%q - old%q, old%inertia, new%inertia)
+    excess = 0.5_rk*(dot(part, new%v, new%momentum) - dot(part, old%v, old%momentum)) &
+             - work(part, new%q - old%q, old%inertia, new%inertia)
   end function kinetic_excess
 end module hht_integrator

@@ -4,6 +4,7 @@
 !> tens of products and no factor. Else massless_acceleration solves the constrained form.
 module initial_acceleration
   use kinds, only: rk
+  use ranks, only: is_true_everywhere
   use matrix_pattern, only: pattern
   use global_vectors, only: dot, largest_entry, multiply, diagonal
   implicit none
@@ -28,26 +29,26 @@ contains
     integer :: i
     a = 0.0_rk
     call invert_diagonal(matrix, mass, scale)
-    is_definite = all(scale(:matrix%num_free) > 0.0_rk)
+    is_definite = is_true_everywhere(all(scale(:matrix%num_free) > 0.0_rk))
     if (.not. is_definite) return
     rest = merge(r, 0.0_rk, scale > 0.0_rk)
     z = scale*rest
     p = z
     allocate (product(size(r)))
-    size_of_rest = dot(rest, z)
+    size_of_rest = dot(matrix%part, rest, z)
     first_size = size_of_rest
     do i = 1, most_products
       is_definite = size_of_rest <= tolerance**2*first_size
       if (is_definite) return
       call multiply(matrix, mass, p, product)
       product = merge(product, 0.0_rk, scale > 0.0_rk)
-      curvature = dot(p, product)
-      if (curvature <= massless*dot(p/max(scale, tiny(1.0_rk)), p)) return
+      curvature = dot(matrix%part, p, product)
+      if (curvature <= massless*dot(matrix%part, p/max(scale, tiny(1.0_rk)), p)) return
       a = a + size_of_rest/curvature*p
       rest = rest - size_of_rest/curvature*product
       z = scale*rest
       last_size = size_of_rest
-      size_of_rest = dot(rest, z)
+      size_of_rest = dot(matrix%part, rest, z)
       p = z + size_of_rest/last_size*p
     end do
   end subroutine find_acceleration
@@ -72,6 +73,6 @@ contains
     real(rk) :: own(size(diagonal_of_mass))
     own = diagonal_of_mass
     own(matrix%num_free + 1:) = 0.0_rk
-    allocate (is_massive, source=own > massless*largest_entry(own))
+    allocate (is_massive, source=own > massless*largest_entry(matrix%part, own))
   end subroutine find_massive
 end module initial_acceleration

@@ -89,7 +89,7 @@ contains
     type(state), intent(inout) :: now !< with its counters
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    call store_motion(self%system%numbers, now)
+    call store_motion(model%mesh, self%system%numbers, now)
   end subroutine store_nodes
 
   !> Whether an increment has no equilibrium for certain.

@@ -14,7 +14,7 @@ module massless_acceleration
   use kinds, only: rk
   use errors, only: error_type
   use matrix_pattern, only: pattern
-  use global_vectors, only: dot, multiply, diagonal
+  use global_vectors, only: dot, multiply, diagonal, largest_entry, total
   use linear_solver, only: equation_solver
   use solver_catalogue, only: make_solver, symmetric_solver
   use initial_acceleration, only: find_massive
@@ -47,7 +47,7 @@ contains
     real(rk), intent(in) :: load(:) !< (num_total) part of r that sets the tolerance [N]
     real(rk), intent(in) :: r(:) !< (num_total) [N]
     real(rk), intent(out) :: a(:) !< (num_total) zero on prescribed unknowns [m/s2]
-    integer, intent(out) :: worst !< 0: none
+    integer, intent(out) :: worst !< 0: none, -1: on another rank
     type(error_type), allocatable, intent(out) :: error
     class(equation_solver), allocatable :: solver
     real(rk) :: own(size(r)), reference(size(r)) ! r and load without their parts on N
@@ -151,12 +151,16 @@ contains
     real(rk), intent(in) :: mass(:), stiffness(:)
     real(rk), intent(out) :: eps !< [s2]
     real(rk), dimension(matrix%num_total) :: m, k
+    real(rk) :: mass_in_all
     logical, allocatable :: is_massive(:)
     call diagonal(matrix, mass, m)
     call diagonal(matrix, stiffness, k)
     call find_massive(matrix, m, is_massive)
     eps = 0.0_rk
-    if (any(is_massive)) eps = share_of_stiffness*sum(m, is_massive)/sum(k, is_massive)
+    m = merge(m, 0.0_rk, is_massive)
+    k = merge(k, 0.0_rk, is_massive)
+    mass_in_all = total(matrix%part, m)
+    if (mass_in_all > 0.0_rk) eps = share_of_stiffness*mass_in_all/total(matrix%part, k)
   end subroutine find_weight
 
   !> Conjugate gradients for M a = r with the preconditioner P^-1 M P^-1. Round-off of a large
@@ -191,14 +195,24 @@ contains
           .or. size_of_rest > largest_growth**2*smallest_size) exit
       p = z + size_of_rest/last_size*p
       call multiply(matrix, mass, p, product)
-      curvature = dot(p, product)
+      curvature = dot(matrix%part, p, product)
       if (.not. curvature > 0.0_rk) exit
       now = now + size_of_rest/curvature*p
       rest = rest - size_of_rest/curvature*product
       last_size = size_of_rest
     end do
-    if (smallest_size > largest_correction**2*reference) worst = maxloc(abs(z), 1)
+    if (smallest_size > largest_correction**2*reference) worst = place_of_largest(matrix, z)
   end subroutine iterate
+
+  !> The unknown of the largest entry; -1 on ranks that do not have it.
+  integer function place_of_largest(matrix, z) result(place)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: z(:) !< (num_total)
+    real(rk) :: largest
+    largest = largest_entry(matrix%part, abs(z))
+    place = -1
+    if (size(z) > 0 .and. maxval(abs(z)) >= largest) place = maxloc(abs(z), 1)
+  end function place_of_largest
 
   !> z = P^-1 M P^-1 rest, and rest . z.
   subroutine precondition(matrix, mass, solver, rest, z, size_of_rest, error)
@@ -214,7 +228,7 @@ contains
     call solve_free(matrix, solver, rest, half, error)
     if (allocated(error)) return
     call multiply(matrix, mass, half, product)
-    size_of_rest = dot(half, product)
+    size_of_rest = dot(matrix%part, half, product)
     call solve_free(matrix, solver, product, z, error)
   end subroutine precondition
 end module massless_acceleration

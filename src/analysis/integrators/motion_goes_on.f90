@@ -8,7 +8,9 @@ module motion_goes_on
   use analysis_state, only: motion, state
   use global_vectors, only: largest_entry
   use kinds, only: rk
+  use ranks, only: is_true_everywhere
   use step_plan, only: step
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: keep_joints, keep_accelerations, has_same_unknowns, unbalanced_force
@@ -32,22 +34,24 @@ contains
 
   !> Whether accelerations and forces of the step before are those of the same unknowns: of a step
   !> with all its unknowns, no reduced model.
-  logical function has_same_unknowns(last, plan, own) result(is_same)
+  logical function has_same_unknowns(last, plan, part, own) result(is_same)
     type(motion), intent(in) :: last !< at the end of the step before
     type(step), intent(in) :: plan
+    type(unknown_part), intent(in) :: part
     type(motion), intent(in) :: own !< at the start of the step
     is_same = .false.
     if (plan%changes_stage .or. .not. allocated(last%viscous_rate)) return
-    if (size(last%q) /= size(own%q)) return
-    is_same = are_equal(last%q, own%q)
-    if (is_same) is_same = are_equal(last%v, own%v)
-    if (is_same) is_same = are_equal(last%a, own%a)
+    if (.not. is_true_everywhere(size(last%q) == size(own%q))) return
+    is_same = are_equal(part, last%q, own%q)
+    if (is_same) is_same = are_equal(part, last%v, own%v)
+    if (is_same) is_same = are_equal(part, last%a, own%a)
   end function has_same_unknowns
 
   !> Whether two vectors differ by round-off alone.
-  logical function are_equal(x, y)
+  logical function are_equal(part, x, y)
+    type(unknown_part), intent(in) :: part
     real(rk), intent(in) :: x(:), y(:)
-    are_equal = largest_entry(abs(x - y)) <= same_share*largest_entry(abs(x))
+    are_equal = largest_entry(part, abs(x - y)) <= same_share*largest_entry(part, abs(x))
   end function are_equal
 
   !> Takes over what belongs to the accelerations.

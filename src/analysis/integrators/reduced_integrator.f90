@@ -108,7 +108,7 @@ contains
                        self%followed, error)
     if (allocated(error) .or. now%has_opened_step) return
     call open_account(model, self%system, now, now%total_time <= 0.0_rk, plan%changes_stage)
-    call store_motion(self%system%numbers, now)
+    call store_motion(model%mesh, self%system%numbers, now)
     call results%report_increment(model, now, error)
   end subroutine open_step
 
@@ -388,7 +388,7 @@ contains
     if (.not. results%needs_motion(model, now)) return
     call results%costs%start('expand', 'structure', 'solver')
     call expand_motion(self%basis, self%system, self%solvers, model%amplitudes, when, now, error)
-    if (.not. allocated(error)) call store_motion(self%system%numbers, now)
+    if (.not. allocated(error)) call store_motion(model%mesh, self%system%numbers, now)
     call results%costs%stop()
   end subroutine store_state
 end module reduced_integrator

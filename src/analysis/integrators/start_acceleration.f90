@@ -12,6 +12,8 @@ module start_acceleration
   use initial_acceleration, only: find_acceleration
   use massless_acceleration, only: find_constrained_acceleration, find_weight, leave_out_fast
   use massless_solids, only: has_massless
+  use matrix_pattern, only: pattern
+  use ranks, only: largest_of_ranks, text_of_rank, this_rank
   use step_plan, only: step
   implicit none
   private
@@ -44,7 +46,7 @@ contains
                                                           is_definite)
     if (is_definite) return
     a = 0.0_rk
-    if (is_balanced(system%matrix%num_free, plan, now, r)) return
+    if (is_balanced(system%matrix, plan, now, r)) return
     call find_constrained(model, system, plan%first_increment, now, r, a, error)
   end subroutine find_start
 
@@ -77,16 +79,29 @@ contains
       leaves_open = .false.
     end do
     if (.not. is_final(worst, error)) then
-      if (worst > 0) call name_place(system%numbers%describe(worst, model%mesh%node_id), error)
+      call name_place(text_of_place(model, system, worst), error)
     else if (.not. allocated(error)) then
       call leave_out_fast(system%matrix, system%mass, (dt/fastest_motion)**2, stiffness, a, error)
     end if
   end subroutine find_constrained
 
+  !> The place of an unknown in words, from the rank that has it.
+  function text_of_place(model, system, unknown) result(text)
+    type(problem), intent(in) :: model
+    type(dam_system), intent(in) :: system
+    integer, intent(in) :: unknown !< -1 on other ranks
+    character(:), allocatable :: text
+    integer :: rank
+    text = ''
+    if (unknown > 0) text = system%numbers%describe(unknown, model%mesh%node_id)
+    rank = largest_of_ranks(merge(this_rank(), -1, unknown > 0))
+    text = text_of_rank(rank, text)
+  end function text_of_place
+
   !> Whether other joints would not help: an acceleration is found, or the system has failed. A
   !> divided matrix that is singular has an error without a place.
   pure logical function is_final(worst, error)
-    integer, intent(in) :: worst !< unknown of the place, 0 for none
+    integer, intent(in) :: worst !< unknown of the place, 0 for none, -1 on another rank
     type(error_type), allocatable, intent(in) :: error
     is_final = worst == 0
     if (allocated(error)) is_final = error%exit_code == system_failed
@@ -95,16 +110,19 @@ contains
   !> Whether the forces balance as well as an increment of the step must balance them: what is left
   !> is the residual of the step before, and not worth a factor. The first increment balances it.
   !> Without loads massless parts that nothing holds would not be found.
-  logical function is_balanced(num_free, plan, now, r)
-    integer, intent(in) :: num_free
+  logical function is_balanced(matrix, plan, now, r)
+    type(pattern), intent(in) :: matrix
     type(step), intent(in) :: plan
     type(state), intent(in) :: now !< at the start of the step
     real(rk), intent(in) :: r(:) !< (num_total) [N]
-    real(rk) :: size_of_load
-    size_of_load = norm(now%motion%external(:num_free))
+    real(rk) :: size_of_load, size_of_rest, largest
+    associate (n => matrix%num_free, part => matrix%part)
+      size_of_load = norm(part, now%motion%external(:n))
+      size_of_rest = norm(part, r(:n))
+      largest = max(size_of_load, now%largest_force)
+    end associate
     is_balanced = size_of_load > 0.0_rk &
-                  .and. norm(r(:num_free)) <= plan%controls%residual_tolerance &
-                  *max(size_of_load, now%largest_force)
+                  .and. size_of_rest <= plan%controls%residual_tolerance*largest
   end function is_balanced
 
   !> Error: a massless part that nothing holds, or an iteration that does not converge.

@@ -7,12 +7,13 @@ module static_duals
   use equilibrium, only: balance_outcome, equilibrium_solver, force_balance
   use equilibrium_catalogue, only: condensed_solver
   use errors, only: error_type
-  use global_vectors, only: dot
+  use global_vectors, only: dot, largest_entry
   use joint_forces, only: gather_tractions
   use joint_law, only: joint_state, state_open, state_slip
   use joint_opening, only: opening_of
   use kinds, only: rk
   use node_dofs, only: zero_vectors
+  use node_parts, only: find_largest, gather_field
   use problem_definition, only: problem
   use step_plan, only: step_controls
   use step_system, only: dam_system
@@ -60,7 +61,7 @@ contains
     if (system%operator%num_points > 0) call add_opening(system, now, duals, force)
     if (size(duals) == 0) return
     if (system%operator%num_points == 0) then
-      call respond_linearly(system, solver, residual_of(system, now), force, duals)
+      call respond_linearly(model, system, solver, residual_of(system, now), force, duals)
       return
     end if
     call respond(model, system, solver, 0.0_rk*force(:, 1), now, rest)
@@ -102,14 +103,15 @@ contains
     real(rk), allocatable, intent(out) :: force(:, :) !< (num_total, goals) [N]
     real(rk), allocatable :: at_nodes(:, :), q(:)
     type(dual_solution) :: own
+    real(rk) :: u(3)
     integer :: node
     allocate (force(system%matrix%num_total, 0), q(system%matrix%num_total))
-    node = maxloc(norm2(now%u, dim=1), dim=1)
+    call find_largest(now%u, node, u)
     own%goal = of_displacement
-    own%value = norm2(now%u(:, node))
+    own%value = norm2(u)
     if (own%value <= 0.0_rk) return
     at_nodes = zero_vectors(model%mesh%num_nodes)
-    at_nodes(:, node) = now%u(:, node)/own%value
+    at_nodes(:, node) = u/own%value
     call system%numbers%reduce(at_nodes, q)
     call add_goal(own, q, duals, force)
   end subroutine add_displacement
@@ -153,7 +155,8 @@ contains
   end subroutine add_goal
 
   !> The responses of a structure without joints.
-  subroutine respond_linearly(system, solver, residual, force, duals)
+  subroutine respond_linearly(model, system, solver, residual, force, duals)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     class(equilibrium_solver), intent(inout) :: solver
     real(rk), intent(in) :: residual(:) !< (num_free) [N]
@@ -169,13 +172,14 @@ contains
       return
     end if
     do k = 1, size(duals)
-      call spread_response(system, x(:, k), duals(k))
-      duals(k)%iteration = abs(dot(residual, x(:, k)))
+      call spread_response(model, system, x(:, k), duals(k))
+      duals(k)%iteration = abs(dot(system%matrix%part, residual, x(:, k)))
     end do
   end subroutine respond_linearly
 
   !> The displacements of nodes of a response.
-  subroutine spread_response(system, x, own)
+  subroutine spread_response(model, system, x, own)
+    type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
     real(rk), intent(in) :: x(:) !< (num_free) [m/N]
     type(dual_solution), intent(inout) :: own
@@ -184,6 +188,7 @@ contains
     q(:size(x)) = x
     allocate (own%u(3, system%numbers%num_nodes))
     call system%numbers%expand(q, own%u)
+    call gather_field(model%mesh, own%u)
   end subroutine spread_response
 
   !> One more equilibrium, from the converged one on.
@@ -230,12 +235,12 @@ contains
     type(response) :: pulled
     real(rk), dimension(3, system%operator%num_points) :: traction, at_rest
     real(rk) :: scale
-    scale = share_of_force*now%largest_force/maxval(abs(force))
+    scale = share_of_force*now%largest_force/largest_entry(system%matrix%part, abs(force))
     call respond(model, system, solver, scale*force, now, pulled)
     if (.not. pulled%is_found) return
     associate (n => system%matrix%num_free)
-      call spread_response(system, (pulled%x(:n) - rest%x(:n))/scale, own)
-      own%iteration = abs(dot(force(:n), rest%x(:n)))
+      call spread_response(model, system, (pulled%x(:n) - rest%x(:n))/scale, own)
+      own%iteration = abs(dot(system%matrix%part, force(:n), rest%x(:n)))
     end associate
     call gather_tractions(system%operator, pulled%joints, traction)
     call gather_tractions(system%operator, rest%joints, at_rest)

@@ -52,7 +52,8 @@ contains
         call sum_contact(system%operator, after)
         new%balanced = 0.0_rk
         after%largest_force = reference_force(model, system, solids, before, after)
-        call task%check_balance(new%external(:n) - new%internal(:n) - new%contact(:n), &
+        call task%check_balance(system%matrix%part, &
+                                new%external(:n) - new%internal(:n) - new%contact(:n), &
                                 after%largest_force, outcome)
         if (.not. task%is_refined) exit
       end do
@@ -78,13 +79,13 @@ contains
       task%balance%rhs = new%external(:n) - old%elastic(:n)
       call system%add_warming(old, 1.0_rk, task%balance%rhs)
       call add_moving_supports(system, system%stiffness, moved, task%balance%rhs)
-      task%balance%reference_force = norm(task%balance%rhs)
+      task%balance%reference_force = norm(system%matrix%part, task%balance%rhs)
       call task%balance%set_jumps(system%operator, new%q, before%joints)
       task%balance%starts_closed = .not. has_traction(system%operator, before%joints)
       task%balance%is_static = .true.
       task%start = new%q
       task%counts_reactions = .true.
-      if (solids%has_inelastic()) task%reference_force = known_force(system%diagonal, before, after)
+      if (solids%has_inelastic()) task%reference_force = known_force(system, before, after)
       allocate (task%x(size(moved)))
     end associate
   end subroutine pose_task
@@ -110,10 +111,11 @@ contains
     type(dam_system), intent(in) :: system
     type(solid_solver), intent(in) :: solids
     type(state), intent(in) :: before, after
-    associate (old => before%motion, new => after%motion, diagonal => system%diagonal)
-      force = max(norm(old%external), norm(new%external), norm(old%internal), &
-                  norm(new%internal), norm(old%contact), norm(new%contact), &
-                  idle_share*norm(diagonal*old%q), idle_share*norm(diagonal*new%q), &
+    associate (old => before%motion, new => after%motion, diagonal => system%diagonal, &
+               part => system%matrix%part)
+      force = max(norm(part, old%external), norm(part, new%external), norm(part, old%internal), &
+                  norm(part, new%internal), norm(part, old%contact), norm(part, new%contact), &
+                  idle_share*norm(part, diagonal*old%q), idle_share*norm(part, diagonal*new%q), &
                   idle_share*closed_force(model, system, after))
     end associate
     if (solids%has_inelastic()) force = max(force, before%largest_force)
@@ -132,12 +134,14 @@ contains
   end function closed_force
 
   !> The part of the reference force that is known before the increment is solved.
-  real(rk) function known_force(diagonal, before, after) result(force)
-    real(rk), intent(in) :: diagonal(:) !< (num_total) of K [N/m]
+  real(rk) function known_force(system, before, after) result(force)
+    type(dam_system), intent(in) :: system
     type(state), intent(in) :: before, after
-    associate (old => before%motion, new => after%motion)
-      force = max(before%largest_force, norm(new%external), norm(old%external), &
-                  norm(old%internal), norm(old%contact), idle_share*norm(diagonal*old%q))
+    associate (old => before%motion, new => after%motion, diagonal => system%diagonal, &
+               part => system%matrix%part)
+      force = max(before%largest_force, norm(part, new%external), norm(part, old%external), &
+                  norm(part, old%internal), norm(part, old%contact), &
+                  idle_share*norm(part, diagonal*old%q))
     end associate
   end function known_force
 

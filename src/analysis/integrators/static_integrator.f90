@@ -14,6 +14,7 @@ module static_integrator
   use state_transfer, only: start_motion, store_motion, sum_contact
   use increment_listener, only: listener
   use equilibrium, only: balance_outcome
+  use global_vectors, only: num_free_in_all
   use guest_forces, only: has_histories
   use step_equilibrium, only: make_equilibrium, prepare_equilibrium
   use step_system, only: build_structure, build_loads, build_origins
@@ -73,7 +74,7 @@ contains
                              self%solids%solver, error)
     call results%costs%stop()
     if (allocated(error)) return
-    now%num_unknowns = self%system%matrix%num_free
+    now%num_unknowns = num_free_in_all(self%system%matrix)
     now%joint_condition = max(now%joint_condition, self%solids%solver%condition)
     call start_motion(self%system%numbers, model%joints, now, has_inertia=.false.)
     call self%solids%open(model, self%system, plan, now)
@@ -129,7 +130,7 @@ contains
     do k = 1, size(plan%fixities)
       reaction(plan%fixities(k)%dof, plan%fixities(k)%node) = 0.0_rk
     end do
-    if (all(abs(reaction) <= 0.0_rk)) return
+    if (is_true_everywhere(all(abs(reaction) <= 0.0_rk))) return
     allocate (release(self%system%matrix%num_total))
     call self%system%numbers%reduce(reaction, release)
     if (.not. follows_motion(model, now%step)) return
@@ -232,7 +233,7 @@ contains
     type(state), intent(inout) :: now
     class(listener), intent(inout) :: results
     type(error_type), allocatable, intent(out) :: error
-    call store_motion(self%system%numbers, now)
+    call store_motion(model%mesh, self%system%numbers, now)
     if (.not. now%is_last_of_step) return
     if (has_left_elasticity(self, now) .or. allocated(now%origin)) return
     if (allocated(now%heat%reference)) return

@@ -6,6 +6,7 @@ module support_rates
   use amplitudes, only: amplitude, slope_at
   use kinds, only: rk
   use problem_definition, only: problem
+  use ranks, only: is_true_everywhere
   use step_loads, only: factor_at, step_time, support
   use step_system, only: dam_system
   implicit none
@@ -18,12 +19,13 @@ module support_rates
 contains
 
   !> Whether a support moves in the step: with an amplitude, or at once.
-  pure logical function has_moving_supports(system)
+  logical function has_moving_supports(system)
     type(dam_system), intent(in) :: system
     associate (supports => system%supports)
       has_moving_supports = any(supports%amplitude > 0 .or. &
                                 abs(supports%value - supports%start_value) > 0.0_rk)
     end associate
+    has_moving_supports = .not. is_true_everywhere(.not. has_moving_supports)
   end function has_moving_supports
 
   !> Rates of all supports at a time; zero for those without an amplitude.

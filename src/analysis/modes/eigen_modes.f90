@@ -8,14 +8,16 @@ module eigen_modes
   use node_dofs, only: num_directions, zero_vectors
   use dof_numbering, only: numbering
   use matrix_pattern, only: pattern
-  use global_vectors, only: norm, distance, multiply, diagonal
+  use global_vectors, only: dot, norm, largest_entry, multiply, diagonal
   use analysis_state, only: vibration_mode
   use assemble_forces, only: inertia_force
   use linear_solver, only: equation_solver
   use arpack, only: lanczos
+  use ranks, only: num_ranks, this_rank
+  use unknown_parts, only: unknown_part
   implicit none
   private
-  public :: list_massive, find_modes, solve_modes, estimate_modes, num_massive
+  public :: list_massive, find_modes, solve_modes, estimate_modes, num_massive, points_down
 
   !> Of the iteration: of results, and of estimates.
   real(rk), parameter :: accurate = 1.0e-13_rk, rough = 1.0e-6_rk
@@ -57,7 +59,7 @@ contains
     if (.not. allocated(error)) call describe_modes(matrix, numbers, mass, lambda, phi, modes)
   end subroutine find_modes
 
-  !> Free unknowns with mass.
+  !> Free unknowns with mass; where vectors are divided the own ones of this rank.
   function list_massive(matrix, mass) result(massive)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values of M
@@ -65,14 +67,18 @@ contains
     real(rk) :: d(matrix%num_total)
     integer :: j
     call diagonal(matrix, mass, d)
-    allocate (massive, source=pack([(j, j=1, matrix%num_free)], d(:matrix%num_free) > 0.0_rk))
+    massive = pack([(j, j=1, matrix%num_free)], d(:matrix%num_free) > 0.0_rk &
+                   .and. matrix%part%owns(matrix%num_free))
   end function list_massive
 
   !> Number of free unknowns with mass: the most modes there can be.
   integer function num_massive(matrix, mass)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:) !< values of M
-    num_massive = size(list_massive(matrix, mass))
+    real(rk) :: number(1)
+    number = size(list_massive(matrix, mass))
+    call matrix%part%add_shares(number)
+    num_massive = nint(number(1))
   end function num_massive
 
   !> The lowest modes in the unknowns, ascending, with unit modal mass.
@@ -111,20 +117,19 @@ contains
     real(rk), intent(in) :: tolerance !< of the iteration
     real(rk), allocatable, intent(out) :: lambda(:), phi(:, :)
     type(error_type), allocatable, intent(out) :: error
-    integer, allocatable :: massive(:)
-    massive = list_massive(matrix, mass)
-    if (size(massive) < num_modes) then
-      call refuse(num_modes, size(massive), error)
+    integer :: most
+    most = num_massive(matrix, mass)
+    if (most < num_modes) then
+      call refuse(num_modes, most, error)
       return
     end if
     allocate (lambda(num_modes), phi(matrix%num_free, num_modes))
-    if (size(massive) <= max(few, num_modes + 1)) then
-      call condense(matrix, mass, solver, massive, lambda, phi, error)
+    if (most <= max(few, num_modes + 1)) then
+      call condense(matrix, mass, solver, most, lambda, phi, error)
     else
-      call lanczos(matrix, mass, solver, min(2*num_modes + 10, size(massive)), tolerance, lambda, &
-                   phi, error)
+      call lanczos(matrix, mass, solver, min(2*num_modes + 10, most), tolerance, lambda, phi, error)
     end if
-    if (.not. allocated(error)) call sort_modes(lambda, phi)
+    if (.not. allocated(error)) call sort_modes(matrix%part, lambda, phi)
   end subroutine find_lowest
 
   !> Error: more modes are requested than exist.
@@ -138,18 +143,20 @@ contains
   end subroutine refuse
 
   !> Dense: G M y = y/lambda with G the flexibility of the unknowns with mass.
-  subroutine condense(matrix, mass, solver, massive, lambda, phi, error)
+  subroutine condense(matrix, mass, solver, num_rows, lambda, phi, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
     class(equation_solver), intent(inout) :: solver
-    integer, intent(in) :: massive(:)
+    integer, intent(in) :: num_rows !< unknowns with mass
     real(rk), intent(out) :: lambda(:), phi(:, :)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: g(:, :), m(:, :), mu(:), work(:)
+    integer, allocatable :: unknown(:)
     integer :: k, n, status
-    n = size(massive)
+    n = num_rows
     allocate (mu(n), work(70*n))
-    call condense_mass(matrix, mass, solver, massive, g, m, error)
+    call place_massive(matrix, mass, n, unknown)
+    call condense_mass(matrix, mass, solver, unknown, g, m, error)
     if (allocated(error)) return
     ! The vectors overwrite m and are scaled to y^T G^-1 y = 1, so that y^T M y = mu.
     call dsygv(3, 'V', 'L', n, m, n, g, n, mu, work, size(work), status)
@@ -161,55 +168,90 @@ contains
     if (allocated(error)) return
     do k = 1, size(lambda)
       lambda(k) = 1.0_rk/mu(n + 1 - k)
-      call spread_mode(matrix, mass, solver, massive, sqrt(lambda(k))*m(:, n + 1 - k), lambda(k), &
+      call spread_mode(matrix, mass, solver, unknown, sqrt(lambda(k))*m(:, n + 1 - k), lambda(k), &
                        phi(:, k:k), error)
       if (allocated(error)) return
     end do
   end subroutine condense
 
+  !> Unknowns with mass in the rows of the dense problem, rank by rank; 0 for those that other ranks
+  !> own.
+  subroutine place_massive(matrix, mass, num_rows, unknown)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: mass(:)
+    integer, intent(in) :: num_rows
+    integer, allocatable, intent(out) :: unknown(:) !< (rows)
+    real(rk) :: counts(num_ranks())
+    integer, allocatable :: own(:)
+    integer :: before
+    own = list_massive(matrix, mass)
+    counts = 0.0_rk
+    counts(this_rank() + 1) = size(own)
+    call matrix%part%add_shares(counts)
+    before = nint(sum(counts(:this_rank())))
+    if (.not. matrix%part%is_divided) before = 0
+    allocate (unknown(num_rows), source=0)
+    unknown(before + 1:before + size(own)) = own
+  end subroutine place_massive
+
+  !> The vector with some values in the unknowns with mass.
+  subroutine spread_massive(matrix, unknown, values, x)
+    type(pattern), intent(in) :: matrix
+    integer, intent(in) :: unknown(:) !< (rows)
+    real(rk), intent(in) :: values(:) !< (rows)
+    real(rk), contiguous, intent(out) :: x(:) !< (num_total)
+    x = 0.0_rk
+    x(pack(unknown, unknown > 0)) = pack(values, unknown > 0)
+    if (matrix%part%is_divided) call matrix%part%add(x)
+  end subroutine spread_massive
+
   !> Flexibility and mass of the unknowns with mass.
-  subroutine condense_mass(matrix, mass, solver, massive, g, m, error)
+  subroutine condense_mass(matrix, mass, solver, unknown, g, m, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
     class(equation_solver), intent(inout) :: solver
-    integer, intent(in) :: massive(:)
-    real(rk), allocatable, intent(out) :: g(:, :), m(:, :) !< (massive, massive)
+    integer, intent(in) :: unknown(:) !< (rows)
+    real(rk), allocatable, intent(out) :: g(:, :), m(:, :) !< (rows, rows)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: x(:, :), y(:)
-    integer :: k
-    allocate (g(size(massive), size(massive)), m(size(massive), size(massive)))
+    integer, allocatable :: rows(:)
+    integer :: k, i
+    allocate (g(size(unknown), size(unknown)), m(size(unknown), size(unknown)), source=0.0_rk)
     allocate (x(matrix%num_total, 1), y(matrix%num_total))
-    do k = 1, size(massive)
-      x = 0.0_rk
-      x(massive(k), 1) = 1.0_rk
+    rows = pack([(k, k=1, size(unknown))], unknown > 0)
+    do k = 1, size(unknown)
+      call spread_massive(matrix, unknown, [(merge(1.0_rk, 0.0_rk, i == k), i=1, size(unknown))], &
+                          x(:, 1))
       call multiply(matrix, mass, x(:, 1), y)
-      m(:, k) = y(massive)
+      m(rows, k) = y(unknown(rows))
       call solver%solve(x(:matrix%num_free, :), error)
       if (allocated(error)) return
-      g(:, k) = x(massive, 1)
+      g(rows, k) = x(unknown(rows), 1)
     end do
+    call matrix%part%add_shares(g)
+    call matrix%part%add_shares(m)
   end subroutine condense_mass
 
   !> All components of a mode from those with mass: phi = lambda K^-1 M phi.
-  subroutine spread_mode(matrix, mass, solver, massive, part, lambda, phi, error)
+  subroutine spread_mode(matrix, mass, solver, unknown, part, lambda, phi, error)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: mass(:)
     class(equation_solver), intent(inout) :: solver
-    integer, intent(in) :: massive(:)
+    integer, intent(in) :: unknown(:) !< (rows)
     real(rk), intent(in) :: part(:), lambda
     real(rk), intent(out) :: phi(:, :) !< (num_free, 1)
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: x(:), y(:)
     allocate (x(matrix%num_total), y(matrix%num_total))
-    x = 0.0_rk
-    x(massive) = lambda*part
+    call spread_massive(matrix, unknown, lambda*part, x)
     call multiply(matrix, mass, x, y)
     phi(:, 1) = y(:matrix%num_free)
     call solver%solve(phi, error)
   end subroutine spread_mode
 
   !> Ascending; the largest component of each mode is positive.
-  pure subroutine sort_modes(lambda, phi)
+  subroutine sort_modes(part, lambda, phi)
+    type(unknown_part), intent(in) :: part
     real(rk), intent(inout) :: lambda(:), phi(:, :)
     real(rk), allocatable :: swap(:)
     real(rk) :: lowest
@@ -222,10 +264,21 @@ contains
       allocate (swap(size(phi, 1)), source=phi(:, other))
       phi(:, other) = phi(:, k)
       phi(:, k) = swap
-      if (swap(maxloc(abs(swap), 1)) < 0.0_rk) phi(:, k) = -swap
+      if (points_down(part, swap)) phi(:, k) = -swap
       deallocate (swap)
     end do
   end subroutine sort_modes
+
+  !> Whether the entry with the largest magnitude is negative.
+  logical function points_down(part, x)
+    type(unknown_part), intent(in) :: part
+    real(rk), intent(in) :: x(:)
+    if (part%is_divided) then
+      points_down = largest_entry(part, -x) > largest_entry(part, x)
+    else
+      points_down = x(maxloc(abs(x), 1)) < 0.0_rk
+    end if
+  end function points_down
 
   !> Error if a mode does not satisfy its equation. In a slender body the forces of an element are
   !> many times K phi: their round-off is the residual that can be had.
@@ -245,8 +298,10 @@ contains
       call multiply(matrix, mass, x, inertia)
       elastic(matrix%num_free + 1:) = 0.0_rk
       inertia(matrix%num_free + 1:) = 0.0_rk
-      residual = distance(elastic, lambda(k)*inertia)/norm(elastic)
-      noise = min(roundoff*norm(d*x)/norm(elastic), largest_noise)
+      associate (part => matrix%part)
+        residual = norm(part, elastic - lambda(k)*inertia)/norm(part, elastic)
+        noise = min(roundoff*norm(part, d*x)/norm(part, elastic), largest_noise)
+      end associate
       if (residual <= max(largest_residual, noise)) cycle
       write (text, '(a,i0,2(a,es8.1))') 'mode ', k, ' does not satisfy its equation: residual ', &
         residual, ' of its forces, expected at most ', max(largest_residual, noise)
@@ -271,7 +326,7 @@ contains
     do k = 1, size(lambda)
       q(:matrix%num_free) = phi(:, k)
       modes(k)%hz = sqrt(lambda(k))/two_pi
-      modes(k)%effective_mass = matmul(q, force)**2
+      modes(k)%effective_mass = [(dot(matrix%part, q, force(:, i))**2, i=1, num_directions)]
       modes(k)%shape = zero_vectors(numbers%num_nodes)
       call numbers%expand(q, modes(k)%shape)
     end do

@@ -4,26 +4,27 @@
 module time_error
   use kinds, only: rk
   use analysis_state, only: motion
-  use eigen_modes, only: estimate_modes, list_massive
+  use dam_mesh, only: fe_mesh
+  use eigen_modes, only: estimate_modes, list_massive, num_massive, points_down
   use equilibrium, only: equilibrium_solver
   use errors, only: error_type
-  use global_vectors, only: multiply
+  use global_vectors, only: dot, multiply
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
+  use matrix_pattern, only: pattern
   use modal_errors, only: modal_error
+  use node_parts, only: find_largest, vector_at
   use problem_definition, only: problem
   use dof_numbering, only: numbering
-  use step_plan, only: step
   use step_system, only: dam_system
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: error_modes, make_error_modes, start_modal_error, take_modal_error
   public :: displacement_of, drive_modes
-  public :: note_largest, note_lost_forces, is_worth_its_cost, start_mesh_error
+  public :: note_largest, note_lost_forces, start_mesh_error
 
   integer, parameter :: most_modes = 10
-  !> The modes cost as much as a few dozen increments.
-  integer, parameter :: least_increments = 500
 
   !> Of a squared frequency: a mesh so coarse has no estimate that holds.
   real(rk), parameter :: most_softening = 0.5_rk
@@ -42,15 +43,10 @@ module time_error
     !> (supports, modes) displacement of a mode relative to that by supports at rest, per
     !> displacement of a support, and force that the support takes from it, per its acceleration
     real(rk), allocatable :: by_support(:, :), support_mass(:, :)
+    type(unknown_part) :: part !< unknowns of this rank; `massive` and supports are own ones of it
   end type error_modes
 
 contains
-
-  !> Is a step long enough for an estimate below 5 % of its cost?
-  pure logical function is_worth_its_cost(plan)
-    type(step), intent(in) :: plan
-    is_worth_its_cost = plan%duration > least_increments*plan%first_increment
-  end function is_worth_its_cost
 
   !> Finds the modes with the factor of the step, which is then lost. Without them (a body that is
   !> free to move) there is no estimate.
@@ -68,14 +64,15 @@ contains
     call solver%factor%factorise(system%matrix, closed, failure)
     if (allocated(failure)) return
     modes%massive = list_massive(system%matrix, system%mass)
-    num_modes = min(most_modes, size(modes%massive))
+    num_modes = min(most_modes, num_massive(system%matrix, system%mass))
     call estimate_modes(system%matrix, system%mass, solver%factor, num_modes, modes%square, &
                         modes%shape, failure)
     if (allocated(failure)) then
       if (allocated(modes%square)) deallocate (modes%square)
       return
     end if
-    call point_upwards(modes%shape)
+    modes%part = system%matrix%part
+    call point_upwards(modes%part, modes%shape)
     modes%own = modes%shape(modes%massive, :)
     allocate (modes%inertia, mold=modes%own)
     allocate (modes%damping(num_modes))
@@ -93,22 +90,35 @@ contains
         modes%by_support(:, k) = force(n + 1:)/modes%square(k)
         modes%support_mass(:, k) = modes%support_mass(:, k) - modes%by_support(:, k)
         call system%find_damping_force(mode, force)
-        modes%damping(k) = dot_product(mode(:n), force(:n))
+        modes%damping(k) = dot(modes%part, mode(:n), force(:n))
       end do
+      call keep_own(system%matrix, modes%by_support)
+      call keep_own(system%matrix, modes%support_mass)
     end associate
   end subroutine make_error_modes
 
   !> Gives the largest entry of each mode a positive sign: as a rule a continued run finds the same
   !> modes. Modes of symmetric dams have two such entries (resumed_modes).
-  pure subroutine point_upwards(shape)
+  subroutine point_upwards(part, shape)
+    type(unknown_part), intent(in) :: part
     real(rk), intent(inout) :: shape(:, :) !< (num_free, modes)
     integer :: k
     do k = 1, size(shape, 2)
-      associate (own => shape(:, k))
-        own = sign(1.0_rk, own(maxloc(abs(own), dim=1)))*own
-      end associate
+      if (points_down(part, shape(:, k))) shape(:, k) = -shape(:, k)
     end do
   end subroutine point_upwards
+
+  !> Leaves out the supports that another rank counts.
+  subroutine keep_own(matrix, values)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(inout) :: values(:, :) !< (supports, modes)
+    logical :: is_own(matrix%num_total)
+    integer :: k
+    is_own = matrix%part%owns(matrix%num_total)
+    do k = 1, size(values, 2)
+      where (.not. is_own(matrix%num_free + 1:)) values(:, k) = 0.0_rk
+    end do
+  end subroutine keep_own
 
   !> The exact motion starts with that of the run, with supports that jump where they stand after
   !> their jump.
@@ -120,8 +130,8 @@ contains
     own%exact = displacement_of(modes, placed)
     allocate (own%rate, own%drive, own%error, mold=own%exact)
     own%error = 0.0_rk
-    own%carried = matmul(at_supports(modes, placed), modes%support_mass)
-    own%carried_rate = matmul(at_supports(modes, moving%v), modes%support_mass)
+    own%carried = carried_by(modes, placed, modes%support_mass)
+    own%carried_rate = carried_by(modes, moving%v, modes%support_mass)
     call drive_modes(modes, moving, displacement_of(modes, moving%q), own%rate, own%drive)
   end subroutine start_modal_error
 
@@ -145,7 +155,18 @@ contains
     real(rk) :: q(size(modes%square))
     q = matmul(unknowns(modes%massive), modes%inertia) &
         + matmul(at_supports(modes, unknowns), modes%by_support)
+    call modes%part%add_shares(q)
   end function displacement_of
+
+  !> What moving supports carry in each mode.
+  function carried_by(modes, unknowns, shares) result(q)
+    type(error_modes), intent(in) :: modes
+    real(rk), intent(in) :: unknowns(:) !< (num_total)
+    real(rk), intent(in) :: shares(:, :) !< (supports, modes)
+    real(rk) :: q(size(modes%square))
+    q = matmul(at_supports(modes, unknowns), shares)
+    call modes%part%add_shares(q)
+  end function carried_by
 
   !> The part of a vector in the supports.
   pure function at_supports(modes, vector) result(part)
@@ -161,7 +182,7 @@ contains
     type(error_modes), intent(in) :: modes
     type(motion), intent(in) :: moving
     real(rk), intent(in) :: q(:)
-    real(rk), intent(out) :: rate(:), drive(:)
+    real(rk), contiguous, intent(out) :: rate(:), drive(:)
     real(rk) :: force(size(modes%massive))
     associate (rows => modes%massive)
       rate = matmul(moving%momentum(rows), modes%own) &
@@ -169,7 +190,10 @@ contains
       force = moving%external(rows) - moving%internal(rows) - moving%contact(rows) &
               - moving%viscous(rows)
     end associate
-    drive = matmul(force, modes%own) + modes%damping*rate + modes%square*q
+    drive = matmul(force, modes%own)
+    call modes%part%add_shares(rate)
+    call modes%part%add_shares(drive)
+    drive = drive + modes%damping*rate + modes%square*q
   end subroutine drive_modes
 
   !> The exact motion over an increment in which the forces change linearly.
@@ -198,7 +222,7 @@ contains
     end do
     own%drive = drive
     own%error = q - own%exact
-    own%motion = max(own%motion, norm2(q - matmul(at_supports(modes, after%q), modes%by_support)))
+    own%motion = max(own%motion, norm2(q - carried_by(modes, after%q, modes%by_support)))
     own%most = max(own%most, norm2(own%error))
   end subroutine take_modal_error
 
@@ -211,8 +235,8 @@ contains
     type(modal_error), intent(inout) :: own
     real(rk), intent(out) :: force(:, :) !< (start and end, modes)
     real(rk), dimension(size(modes%square)) :: place, rate, gain, way
-    place = matmul(at_supports(modes, unknowns), modes%support_mass)
-    rate = matmul(at_supports(modes, slopes), modes%support_mass)
+    place = carried_by(modes, unknowns, modes%support_mass)
+    rate = carried_by(modes, slopes, modes%support_mass)
     gain = (rate - own%carried_rate)/dt
     way = (place - own%carried - dt*own%carried_rate)/dt**2
     force(1, :) = 6.0_rk*way - 2.0_rk*gain
@@ -228,7 +252,9 @@ contains
     type(motion), intent(in) :: after
     type(modal_error), intent(inout) :: own
     real(rk), dimension(size(modes%square)) :: lost, q
-    lost = own%drive - matmul(after%external(modes%massive), modes%own)
+    lost = matmul(after%external(modes%massive), modes%own)
+    call modes%part%add_shares(lost)
+    lost = own%drive - lost
     q = own%exact + own%error
     own%lost = own%lost + sum(lost**2/modes%square)
     own%held = own%held + sum(modes%square*q**2)
@@ -259,15 +285,16 @@ contains
   end subroutine advance_oscillator
 
   !> Keeps the largest displacement so far, and its error: the part along the displacement.
-  subroutine note_largest(numbers, modes, u, own)
+  subroutine note_largest(mesh, numbers, modes, u, own)
+    type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(error_modes), intent(in) :: modes
-    real(rk), intent(in) :: u(:, :) !< (3, nodes) [m]
+    real(rk), intent(in) :: u(:, :) !< (3, nodes), on the first rank [m]
     type(modal_error), intent(inout) :: own
-    real(rk) :: largest
+    real(rk) :: moved(3), largest
     integer :: node
-    node = maxloc(u(1, :)**2 + u(2, :)**2 + u(3, :)**2, dim=1)
-    largest = norm2(u(:, node))
+    call find_largest(u, node, moved)
+    largest = norm2(moved)
     if (largest <= own%largest) return
     own%largest = largest
     own%at_largest = error_along(own%error)
@@ -280,7 +307,7 @@ contains
       q = 0.0_rk
       q(:size(modes%shape, 1)) = matmul(modes%shape, of_modes)
       call numbers%expand(q, error)
-      error_along = dot_product(error(:, node), u(:, node))/largest
+      error_along = dot_product(vector_at(mesh, node, error), moved)/largest
     end function error_along
   end subroutine note_largest
 end module time_error

@@ -10,7 +10,6 @@
 !>
 !> Its force, sum w B^T ds, acts with an impulse over the increment, like the forces of joints.
 module conserving_stress
-  use dof_numbering, only: numbering
   use inelastic_blocks, only: inelastic_block
   use inelastic_forces, only: add_elements, block_answer, has_many_elements
   use kinds, only: rk
@@ -18,8 +17,8 @@ module conserving_stress
   use material_points, only: consistent_tangent, crushing_energy, fracture_energy, no_tangent, &
                              point_state, stored_energy, time_increment, update_report
   use problem_definition, only: problem
-  use ranks, only: add_over_ranks
   use shape_hex8, only: hex8_dofs
+  use step_system, only: dam_system
   implicit none
   private
   public :: work_correction, point_work, correct_stress
@@ -73,15 +72,15 @@ contains
   end function is_active
 
   !> Takes the weighted force from the initial-stress force. Consistent tangents get its derivative.
-  subroutine add_force(self, model, numbers, time, old, new, answers, excess)
+  subroutine add_force(self, model, system, time, old, new, answers, excess)
     class(work_correction), intent(inout) :: self
     type(problem), intent(in) :: model
-    type(numbering), intent(in) :: numbers
+    type(dam_system), intent(in) :: system
     type(time_increment), intent(in) :: time
     type(point_state), intent(in) :: old(:), new(:) !< (blocks) at both ends of the increment
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     real(rk), intent(inout) :: excess(:) !< (num_total) [N]
-    real(rk) :: nodal(3, numbers%num_nodes)
+    real(rk) :: nodal(3, system%numbers%num_nodes)
     integer :: i
     if (.not. self%is_active()) return
     !$omp parallel do schedule(dynamic) default(none) &
@@ -99,9 +98,9 @@ contains
       if (.not. allocated(answers(i)%correction)) cycle
       call add_elements(model, i, answers(i)%correction, answers(i)%has_excess, nodal)
     end do
-    call add_over_ranks(nodal)
     self%force = excess ! for its size
-    call numbers%reduce(nodal, self%force)
+    call system%numbers%reduce(nodal, self%force)
+    call system%matrix%part%add(self%force)
     excess = excess - self%weight*self%force
   end subroutine add_force
 

@@ -1,5 +1,9 @@
 !> The iteration on initial-stress forces within an increment (theory.md, 12).
 submodule(solid_iteration) force_iteration
+  use dof_numbering, only: numbering
+  use global_vectors, only: largest_entry, norm
+  use ranks, only: is_true_everywhere, largest_of_ranks
+  use unknown_parts, only: unknown_part
   implicit none
 
   !> Floor of the increment of displacement, as a fraction of the displacements.
@@ -69,20 +73,23 @@ contains
     type(state), intent(inout) :: after
     type(iterate_state), intent(inout) :: now
     real(rk) :: product(size(before%motion%q))
+    logical :: is_predicted
     integer :: n
     n = system%matrix%num_free
     call self%mixer%forget()
     now%rhs = now%task%balance%rhs
     if (now%task%is_refined) then
       now%guess = remaining_excess(self, system, now%task%x)
-      now%moved = norm(now%task%start + now%task%x - before%motion%q)
+      now%moved = norm(system%matrix%part, now%task%start + now%task%x - before%motion%q)
       return
     end if
     call self%elements%release(self%answers)
     now%task%x = 0.0_rk
     call self%matrix%multiply_lost(system%matrix, now%task%start - before%motion%q, product)
     now%guess = before%motion%elastic(:n) - before%motion%internal(:n) + product(:n)
-    if (allocated(now%task%predicted) .and. any(abs(now%guess) > 0.0_rk)) then
+    is_predicted = allocated(now%task%predicted)
+    if (is_predicted) is_predicted = has_forces(now%guess)
+    if (is_predicted) then
       now%task%x(:n) = now%task%predicted
       if (self%may_choose) call choose_from_answers(self, model, before)
       call evaluate(self, model, system, now%task, before, after)
@@ -90,8 +97,8 @@ contains
       self%elements%is_made = .false. ! for the iterations: made from these answers
       call choose_elements(self, model, system, before, now)
     end if
-    now%force = norm(now%rhs + self%weight*now%guess)
-    now%moved = norm(now%task%start - before%motion%q)
+    now%force = norm(system%matrix%part, now%rhs + self%weight*now%guess)
+    now%moved = norm(system%matrix%part, now%task%start - before%motion%q)
   end subroutine start_iteration
 
   !> Solves with the guess and evaluates the laws; `now%is_lost` if the iteration must stop.
@@ -125,7 +132,7 @@ contains
       outcome%unmet = inner%unmet
       now%is_lost = .not. inner%has_converged
       if (allocated(error) .or. now%is_lost) return
-      now%moved = norm(task%x - last_x)
+      now%moved = norm(system%matrix%part, task%x - last_x)
       now%last_force = now%force
       call find_answer(self, model, system, before, after, now, outcome)
     end associate
@@ -170,7 +177,8 @@ contains
     if (.not. self%may_choose .or. (self%elements%is_made .and. .not. now%has_further)) return
     if (.not. self%elements%is_made) call choose_from_answers(self, model, before)
     call self%mixer%forget()
-    self%mixer%rows = find_active(model, system%numbers, self%elements%takes_part)
+    call self%mixer%choose_rows(system%matrix%part, &
+                                find_active(model, system%numbers, self%elements%takes_part))
     now%has_further = .false.
     now%has_solved = .false.
     if (.not. self%solver%may_repeat) return
@@ -257,10 +265,11 @@ contains
     type(increment_task), intent(in) :: task
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
-    call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
-    call self%correction%add_force(model, system%numbers, self%time, before%points, after%points, &
+    call sum_excess(model, system%numbers, system%matrix%part, self%answers, self%guest_excess, &
+                    self%excess)
+    call self%correction%add_force(model, system, self%time, before%points, after%points, &
                                    self%answers, self%excess)
-    call self%loss%add_force(model, system%numbers, task, before%points, self%answers, self%excess)
+    call self%loss%add_force(model, system, task, before%points, self%answers, self%excess)
   end subroutine sum_forces
 
   !> Residual, and an estimate of the next correction from the last one.
@@ -271,17 +280,20 @@ contains
     type(iterate_state), intent(inout) :: now
     type(balance_outcome), intent(inout) :: outcome
     real(rk) :: reference, increment, q(size(before%motion%q)), product(size(before%motion%q))
-    now%force = self%weight*norm(now%answer - now%guess)
     q = now%task%start + now%task%x
     reference = now%task%reference_force
-    if (now%task%counts_reactions) then
-      call system%find_elastic(q, product)
-      reference = max(reference, norm(product - self%excess))
-    end if
+    associate (part => system%matrix%part)
+      now%force = self%weight*norm(part, now%answer - now%guess)
+      if (now%task%counts_reactions) then
+        call system%find_elastic(q, product)
+        reference = max(reference, norm(part, product - self%excess))
+      end if
+      increment = max(norm(part, q - before%motion%q), smallest_increment*norm(part, q), &
+                      tiny(1.0_rk))
+      outcome%worst_node = node_of_largest(part, system%numbers, now%answer - now%guess)
+    end associate
     outcome%residual = now%force/max(reference, tiny(1.0_rk))
     outcome%worst_point = 0
-    outcome%worst_unknown = maxloc(abs(now%answer - now%guess), 1)
-    increment = max(norm(q - before%motion%q), smallest_increment*norm(q), tiny(1.0_rk))
     outcome%correction = now%moved/increment*min(1.0_rk, now%force/max(now%last_force, &
                                                                        tiny(1.0_rk)))
     associate (controls => self%solver%controls)
@@ -290,6 +302,26 @@ contains
                                outcome%correction <= controls%increment_tolerance)
     end associate
   end subroutine measure_iterate
+
+  !> The node of the largest entry, on all ranks; 0 without entries.
+  integer function node_of_largest(part, numbers, force) result(node)
+    type(unknown_part), intent(in) :: part
+    type(numbering), intent(in) :: numbers
+    real(rk), intent(in) :: force(:) !< (num_free) [N]
+    real(rk) :: largest
+    largest = largest_entry(part, abs(force))
+    node = 0
+    if (maxval(abs(force)) >= largest .and. size(force) > 0) then
+      node = numbers%node(maxloc(abs(force), 1))
+    end if
+    node = largest_of_ranks(node)
+  end function node_of_largest
+
+  !> Whether a force is not zero, on any rank.
+  logical function has_forces(force)
+    real(rk), intent(in) :: force(:) !< (num_free) [N]
+    has_forces = .not. is_true_everywhere(.not. any(abs(force) > 0.0_rk))
+  end function has_forces
 
   !> Chooses the next guess of s.
   subroutine choose_guess(self, model, system, now, error)

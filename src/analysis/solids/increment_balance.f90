@@ -6,6 +6,7 @@ module increment_balance
   use equilibrium, only: balance_outcome, force_balance
   use global_vectors, only: norm
   use kinds, only: rk
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: increment_task
@@ -42,8 +43,9 @@ contains
   !> Measures the residual of all forces, those of the laws included, over the reference force. It
   !> decides convergence, and whether another pass follows (`is_refined`). The outcome counts the
   !> iterations of all passes.
-  subroutine check_balance(self, unbalance, reference, outcome)
+  subroutine check_balance(self, part, unbalance, reference, outcome)
     class(increment_task), intent(inout) :: self
+    type(unknown_part), intent(in) :: part
     real(rk), intent(in) :: unbalance(:) !< (free unknowns) [N]
     real(rk), intent(in) :: reference !< [N]
     type(balance_outcome), intent(inout) :: outcome
@@ -51,7 +53,7 @@ contains
     self%iterations = self%iterations + outcome%iterations
     outcome%iterations = self%iterations
     last = self%residual
-    self%residual = norm(unbalance)/max(reference, tiny(1.0_rk))
+    self%residual = norm(part, unbalance)/max(reference, tiny(1.0_rk))
     outcome%residual = self%residual
     outcome%tolerance = self%tolerance
     outcome%has_converged = self%residual <= self%tolerance

@@ -16,7 +16,8 @@ module inelastic_forces
   use gauss_rules, only: hex_point
   use shape_hex8, only: derivative_at, gradient_at, hex8_dofs
   use material_points, only: point_state, time_increment, no_tangent
-  use ranks, only: add_over_ranks, is_first_rank
+  use ranks, only: is_first_rank
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: block_answer, open_answers, update_points, recall_points, sum_excess, find_failure
@@ -232,12 +233,13 @@ contains
   end subroutine sum_block
 
   !> Initial-stress force of all blocks and of other guests in the unknowns of a step.
-  subroutine sum_excess(model, numbers, answers, of_guests, excess)
+  subroutine sum_excess(model, numbers, part, answers, of_guests, excess)
     type(problem), intent(in) :: model
     type(numbering), intent(in) :: numbers
+    type(unknown_part), intent(in) :: part
     type(block_answer), intent(in) :: answers(:)
     real(rk), intent(in) :: of_guests(:, :) !< (3, nodes) [N]
-    real(rk), intent(out) :: excess(:) !< (num_total) [N]
+    real(rk), contiguous, intent(out) :: excess(:) !< (num_total) [N]
     real(rk), allocatable :: nodal(:, :)
     integer :: i
     nodal = of_guests
@@ -245,8 +247,8 @@ contains
     do i = 1, size(answers)
       call add_elements(model, i, answers(i)%force, answers(i)%has_excess, nodal)
     end do
-    call add_over_ranks(nodal)
     call numbers%reduce(nodal, excess)
+    call part%add(excess)
   end subroutine sum_excess
 
   !> Adds forces of the elements of a block at their nodes.

@@ -8,7 +8,6 @@
 !> undamaged solids contracts.
 module lost_damping
   use damping_rayleigh, only: rayleigh_coefficients
-  use dof_numbering, only: numbering
   use increment_balance, only: increment_task
   use inelastic_blocks, only: inelastic_block
   use inelastic_forces, only: add_elements, block_answer, has_many_elements
@@ -16,8 +15,8 @@ module lost_damping
   use material_points, only: point_state
   use node_dofs, only: gather_vectors
   use problem_definition, only: problem
-  use ranks, only: add_over_ranks
   use shape_hex8, only: hex8_dofs
+  use step_system, only: dam_system
   use step_plan, only: step
   implicit none
   private
@@ -63,18 +62,18 @@ contains
 
   !> Adds the lost damping force to the initial-stress force. Where the answers have tangents the
   !> loss of damping is added to them as a loss of stiffness.
-  subroutine add_force(self, model, numbers, task, old, answers, excess)
+  subroutine add_force(self, model, system, task, old, answers, excess)
     class(damping_loss), intent(inout) :: self
     type(problem), intent(in) :: model
-    type(numbering), intent(in) :: numbers
+    type(dam_system), intent(in) :: system
     type(increment_task), intent(in) :: task !< with its velocities and a trial `x`
     type(point_state), intent(in) :: old(:) !< (blocks) converged
     type(block_answer), intent(inout) :: answers(:) !< (blocks)
     real(rk), intent(inout) :: excess(:) !< (num_total) [N]
-    real(rk) :: v(3, numbers%num_nodes), force(3, numbers%num_nodes)
+    real(rk) :: v(3, system%numbers%num_nodes), force(3, system%numbers%num_nodes)
     integer :: i
     if (.not. allocated(self%beta)) return
-    call numbers%expand(task%velocity + task%velocity_of_x*task%x, v)
+    call system%numbers%expand(task%velocity + task%velocity_of_x*task%x, v)
     !$omp parallel do schedule(dynamic) default(none) shared(self, model, task, v, old, answers) &
     !$omp if (has_many_elements(answers))
     do i = 1, size(answers)
@@ -87,9 +86,9 @@ contains
       if (.not. allocated(answers(i)%lost)) cycle
       call add_elements(model, i, answers(i)%lost, answers(i)%has_excess, force)
     end do
-    call add_over_ranks(force)
     self%force = excess ! for its size
-    call numbers%reduce(force, self%force)
+    call system%numbers%reduce(force, self%force)
+    call system%matrix%part%add(self%force)
     excess = excess + self%force
   end subroutine add_force
 

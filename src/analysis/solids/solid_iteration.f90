@@ -15,7 +15,6 @@ module solid_iteration
   use active_unknowns, only: find_active
   use changing_elements, only: element_choice
   use analysis_state, only: state, motion
-  use global_vectors, only: norm
   use material_points, only: time_increment
   use node_dofs, only: zero_vectors
   use lost_damping, only: damping_loss
@@ -98,13 +97,17 @@ contains
     call system%set_thermal(now%motion)
     call system%find_elastic(now%motion%q, now%motion%elastic)
     if (size(now%points) > 0 .or. has_histories(now%guests)) then
-      if (.not. has_histories(now%guests)) self%mixer%rows = find_active(model, system%numbers)
+      self%mixer%part = system%matrix%part
+      if (.not. has_histories(now%guests)) then
+        call self%mixer%choose_rows(system%matrix%part, find_active(model, system%numbers))
+      end if
       allocate (self%excess(system%matrix%num_total))
       self%guest_excess = zero_vectors(model%mesh%num_nodes)
       call open_answers(model%inelastic, self%answers)
       call recall_points(model, now%points, self%answers)
       call recall_guests(model, now%u, now%guests, self%guest_excess)
-      call sum_excess(model, system%numbers, self%answers, self%guest_excess, self%excess)
+      call sum_excess(model, system%numbers, system%matrix%part, self%answers, &
+                      self%guest_excess, self%excess)
     end if
     call self%set_internal(now%motion)
   end subroutine open_solids
@@ -135,7 +138,7 @@ contains
     end if
     task%velocity = now%motion%v
     task%x = 0.0_rk*now%motion%v
-    call self%loss%add_force(model, system%numbers, task, now%points, self%answers, self%excess)
+    call self%loss%add_force(model, system, task, now%points, self%answers, self%excess)
     call self%set_internal(now%motion)
   end subroutine start_lost_damping
 

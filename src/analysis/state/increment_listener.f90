@@ -6,8 +6,9 @@ module increment_listener
   use logging, only: run_log
   use run_ledger, only: ledger
   use problem_definition, only: problem
-  use analysis_state, only: state, vibration_mode
+  use analysis_state, only: motion, state, vibration_mode
   use dual_solutions, only: dual_solution
+  use motion_parts, only: gather_motion
   use ranks, only: add_over_ranks, is_first_rank, largest_of_ranks, num_ranks, &
                    number_of_first_rank, share_error
   use stop_signals, only: name_of_signal, stop_signal, take_signal
@@ -30,10 +31,13 @@ module increment_listener
     real(rk) :: mesh_error(2) = -1.0_rk
     !> Of the end of a linear static step; allocated until the results have taken them
     type(dual_solution), allocatable :: duals(:)
+    !> Of all ranks, where vectors are divided and a checkpoint is due; on the first rank
+    type(motion), allocatable :: whole_motion
   contains
     procedure(increment_done), deferred :: increment_done
     procedure :: increment_dropped
     procedure :: wants_motion => always_wants_motion
+    procedure :: wants_checkpoint => never_wants_checkpoint
     procedure(modes_found), deferred :: modes_found
     procedure :: weigh_modes
     procedure, non_overridable :: needs_motion, report_increment, report_modes, &
@@ -72,6 +76,14 @@ contains
     type(state), intent(in) :: now
     wants = .true.
   end function always_wants_motion
+
+  !> Whether the results write a checkpoint after an increment.
+  logical function never_wants_checkpoint(self, model, now) result(wants)
+    class(listener), intent(in) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    wants = .false.
+  end function never_wants_checkpoint
 
   !> The answer of `wants_motion`. The results are one rank's; all ranks have the answer of rank 0.
   logical function needs_motion(self, model, now) result(needs)
@@ -113,11 +125,24 @@ contains
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(error_type), allocatable, intent(out) :: error
+    call bring_motion(self, model, now)
     call self%increment_done(model, now, error)
     call share_error(error)
+    if (allocated(self%whole_motion)) deallocate (self%whole_motion)
     if (allocated(error) .or. num_ranks() == 1) return
     call take_signal(int(largest_of_ranks(stop_signal()), c_int))
   end subroutine report_increment
+
+  !> Puts the motion together on the first rank where it is divided and a checkpoint is due.
+  subroutine bring_motion(self, model, now)
+    class(listener), intent(inout) :: self
+    type(problem), intent(in) :: model
+    type(state), intent(in) :: now
+    if (.not. allocated(model%mesh%is_node_here)) return
+    if (number_of_first_rank(merge(1, 0, self%wants_checkpoint(model, now))) == 0) return
+    allocate (self%whole_motion)
+    call gather_motion(model, now, self%whole_motion)
+  end subroutine bring_motion
 
   !> Reports modes, as `report_increment` does an increment.
   subroutine report_modes(self, model, step, modes, error)

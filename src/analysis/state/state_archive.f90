@@ -5,7 +5,7 @@ module state_archive
   use archive_type, only: archive
   use guest_histories, only: history_reference, list_histories
   use step_control, only: increment_control
-  use analysis_state, only: state, increment_status, last_matrix, reduction_status, &
+  use analysis_state, only: motion, state, increment_status, last_matrix, reduction_status, &
                             time_accuracy
   use energy_archive, only: load_energy, save_energy
   use modal_errors, only: load_timing, save_timing
@@ -21,10 +21,11 @@ module state_archive
 contains
 
   !> Writes the state into the group `state`.
-  subroutine save_state(now, file, error)
+  subroutine save_state(now, file, error, whole)
     type(state), intent(in) :: now
     class(archive), intent(inout) :: file !< open for writing
     type(error_type), allocatable, intent(out) :: error
+    type(motion), intent(in), optional :: whole !< in place of the part that this rank has
     call file%open_group('state')
     call file%open_group('status')
     call save_status(now%increment_status, file)
@@ -42,7 +43,11 @@ contains
     call save_matrix(now%matrix, file)
     call file%close_group()
     call file%open_group('motion')
-    call save_motion(now%motion, file)
+    if (present(whole)) then
+      call save_motion(whole, file)
+    else
+      call save_motion(now%motion, file)
+    end if
     call file%close_group()
     call save_histories(now, file)
     call save_twins(now%twins, file)

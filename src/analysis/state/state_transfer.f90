@@ -1,5 +1,6 @@
 !> Transfers motion between the nodes of a model and the unknowns of a step.
 module state_transfer
+  use dam_mesh, only: fe_mesh
   use kinds, only: rk
   use joint_law, only: joint_state
   use joint_points, only: dam_joint, relative_displacement
@@ -7,6 +8,7 @@ module state_transfer
   use analysis_state, only: state, motion
   use joint_operator, only: jump_operator
   use joint_forces, only: gather_tractions
+  use node_parts, only: gather_field
   implicit none
   private
   public :: start_motion, store_motion, restrict, sum_contact
@@ -103,8 +105,10 @@ contains
     call operator%add_forces(traction, now%motion%contact)
   end subroutine sum_contact
 
-  !> Writes the motion back to the nodes. Reactions are the residual of prescribed unknowns.
-  subroutine store_motion(numbers, now)
+  !> Writes the motion back to the nodes. Reactions are the residual of prescribed unknowns. Where
+  !> vectors are divided a rank has the fields at its nodes; the first one has them at all nodes.
+  subroutine store_motion(mesh, numbers, now)
+    type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(state), intent(inout) :: now
     real(rk) :: residual(numbers%num_free + 1:numbers%num_total)
@@ -120,5 +124,9 @@ contains
       end if
       call numbers%expand_prescribed(residual, now%reaction)
     end associate
+    call gather_field(mesh, now%u)
+    if (allocated(now%v)) call gather_field(mesh, now%v)
+    if (allocated(now%a)) call gather_field(mesh, now%a)
+    call gather_field(mesh, now%reaction)
   end subroutine store_motion
 end module state_transfer

@@ -2,7 +2,7 @@
 !> cuts, accepts and reports increments. The integrator of the step computes the trial state.
 module step_loop
   use kinds, only: rk
-  use error_in_time, only: find_weights, note_error_in_time
+  use error_in_time, only: make_norm, motion_norm, note_error_in_time
   use errors, only: error_type, raise, system_failed
   use problem_definition, only: problem
   use step_plan, only: step
@@ -16,6 +16,7 @@ module step_loop
   use joint_water, only: record_uplift
   use matrix_pattern, only: pattern
   use modal_errors, only: modal_error
+  use motion_parts, only: take_own_motion
   use path_sampling, only: sample_paths
   use ranks, only: is_first_rank
   use integrator_type, only: integrator
@@ -35,7 +36,7 @@ module step_loop
     type(step_time) :: when !< its end
     type(balance_outcome) :: outcome
     type(increment_control) :: control !< before the first cut of the increment
-    real(rk), allocatable :: weights(:) !< of the unknowns in the error in time; only where needed
+    type(motion_norm), allocatable :: norm !< of the error in time; only where needed
   end type attempt
 
 contains
@@ -49,6 +50,8 @@ contains
     type(error_type), allocatable, intent(out) :: error
     class(integrator), allocatable :: method
     integer :: i
+    if (now%step > 0) call show_stage(model, now%step)
+    call take_own_motion(model, now)
     do i = first_step(now), size(model%steps)
       call make_integrator(model%steps(i)%procedure, method)
       if (i == now%step .and. now%has_opened_step) then
@@ -214,7 +217,10 @@ contains
     next%when = step_time(is_dynamic=plan%procedure%has_inertia, start=now%step_start, &
                           duration=plan%duration)
     if (now%increment == 0) call start_control(plan, plan%procedure%has_inertia, now%control)
-    if (plan%follows_accuracy()) call find_weights(method%system, next%weights)
+    if (plan%follows_accuracy()) then
+      allocate (next%norm)
+      call make_norm(method%system, next%norm)
+    end if
     next%trial = now
     next%control = now%control
     do while (now%step_time < plan%duration)
@@ -274,7 +280,7 @@ contains
       call method%solids%matrix%store(trial%matrix)
       trial%matrix%has_all_blocks = method%solids%solver%has_all_blocks
       call trial%control%accept(method%solids%effort(next%outcome%own_iterations()))
-      if (allocated(next%weights)) call follow_error(plan, now, next, results)
+      if (allocated(next%norm)) call follow_error(plan, now, next, results)
       if (method%solids%has_inelastic()) then
         call results%costs%start('recover', 'inelastic solids', 'inelastic')
         call gather_points(model%inelastic, trial%points)
@@ -319,7 +325,7 @@ contains
     class(listener), intent(inout) :: results
     integer :: doublings
     call results%costs%start('estimate', 'increments', 'output')
-    call note_error_in_time(plan, next%weights, next%when%increment, now, next%trial, doublings)
+    call note_error_in_time(plan, next%norm, next%when%increment, now, next%trial, doublings)
     call next%trial%control%follow_error(next%when%now, doublings)
     call results%costs%stop()
   end subroutine follow_error

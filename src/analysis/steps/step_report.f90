@@ -138,8 +138,8 @@ contains
       p = p - system%operator%first_point(j) + 1
       text = '; largest in joint '//model%joints(j)%name//' at '// &
              place_text(model%joints(j)%x(:, p))//name_slave_side(model%joints(j))
-    else if (outcome%worst_unknown > 0) then
-      node = system%numbers%node(outcome%worst_unknown)
+    else if (outcome%worst_node > 0) then
+      node = outcome%worst_node
       text = '; largest at node '//count_text(model%mesh%node_id(node))// &
              own_name_of_node(model%outside, model%instances, model%mesh%node_id(node))//' at '// &
              place_text(model%mesh%x(:, node))
@@ -153,7 +153,7 @@ contains
     integer, intent(in) :: step
     character(:), allocatable :: text
     text = ''
-    if (outcome%worst_point > 0 .or. outcome%worst_unknown == 0) return
+    if (outcome%worst_point > 0 .or. outcome%worst_node == 0) return
     if (.not. model%steps(step)%procedure%is_static()) return
     text = ' (beyond its peak load a cracking structure needs prescribed displacements, '// &
            'not forces; with these, smaller increments or *CONTROLS, TANGENT='

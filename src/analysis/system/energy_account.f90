@@ -12,7 +12,9 @@ module energy_account
   use guest_histories, only: sum_work
   use analysis_state, only: energy_balance, motion, state
   use step_system, only: dam_system
+  use matrix_pattern, only: pattern
   use thermal_work, only: add_thermal_work
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: open_account, add_static_work, add_dynamic_work, find_error
@@ -60,20 +62,21 @@ contains
     real(rk), allocatable :: du(:)
     real(rk) :: released
     call sum_work(model, after, guests)
-    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free, &
+               part => system%matrix%part)
       du = new%q - old%q
-      call add_external(du, n, old, new, after%energy)
+      call add_external(system%matrix, du, old, new, after%energy)
       if (allocated(new%release) .and. model%steps(after%step)%changes_stage) then
-        released = work(du, old%release, new%release)
+        released = work(part, du, old%release, new%release)
         after%energy%stages = after%energy%stages + released
         after%energy%external = after%energy%external - released
       end if
-      after%energy%numerical = after%energy%numerical + work(du, old%contact, new%contact) &
-                               + work(du(:n), old%balanced, new%balanced) &
-                               + inelastic_work(du, old, new) &
+      after%energy%numerical = after%energy%numerical + work(part, du, old%contact, new%contact) &
+                               + work(part, du(:n), old%balanced, new%balanced) &
+                               + inelastic_work(part, du, old, new) &
                                - change_of_stores(model, before, guests)
     end associate
-    call add_thermal_work(model, before, after)
+    call add_thermal_work(model, system%matrix%part, before, after)
     call set_stored(guests, system, after)
   end subroutine add_static_work
 
@@ -89,58 +92,60 @@ contains
     real(rk), allocatable :: du(:)
     real(rk) :: taken, lost, of_correction
     call sum_work(model, after, guests)
-    associate (old => before%motion, new => after%motion, n => system%matrix%num_free)
+    associate (old => before%motion, new => after%motion, n => system%matrix%num_free, &
+               part => system%matrix%part)
       du = new%q - old%q
-      call add_external(du, n, old, new, after%energy)
+      call add_external(system%matrix, du, old, new, after%energy)
       lost = 0.0_rk
-      if (allocated(new%lost_damping)) lost = work(du, old%lost_damping, new%lost_damping)
-      after%energy%damping = after%energy%damping + work(du, old%viscous, new%viscous) - lost
+      if (allocated(new%lost_damping)) lost = work(part, du, old%lost_damping, new%lost_damping)
+      after%energy%damping = after%energy%damping + work(part, du, old%viscous, new%viscous) - lost
       of_correction = 0.0_rk
       if (allocated(new%correction)) then
-        of_correction = dot(du(n + 1:), new%correction(n + 1:))
+        of_correction = dot(part, du(n + 1:), new%correction(n + 1:), n)
         after%energy%external = after%energy%external + of_correction
       end if
-      taken = work(du(:n), old%external(:n), new%external(:n)) &
-              - work(du(:n), old%viscous(:n), new%viscous(:n)) &
-              - work(du(:n), old%elastic(:n), new%elastic(:n)) &
-              - work(du(:n), old%balanced(:n), new%balanced(:n)) &
-              + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
-              + inelastic_work(du(n + 1:), old, new, n) + of_correction &
+      taken = work(part, du(:n), old%external(:n), new%external(:n)) &
+              - work(part, du(:n), old%viscous(:n), new%viscous(:n)) &
+              - work(part, du(:n), old%elastic(:n), new%elastic(:n)) &
+              - work(part, du(:n), old%balanced(:n), new%balanced(:n)) &
+              + work(part, du(n + 1:), old%contact(n + 1:), new%contact(n + 1:), n) &
+              + inelastic_work(part, du(n + 1:), old, new, n) + of_correction &
               - change_of_stores(model, before, guests) - excess + lost
     end associate
     after%energy%numerical = after%energy%numerical + taken
-    call add_thermal_work(model, before, after)
+    call add_thermal_work(model, system%matrix%part, before, after)
     call set_stored(guests, system, after)
   end subroutine add_dynamic_work
 
   !> Work of the loads and of moving supports.
-  subroutine add_external(du, num_free, old, new, energy)
+  subroutine add_external(matrix, du, old, new, energy)
+    type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: du(:)
-    integer, intent(in) :: num_free
     type(motion), intent(in) :: old, new
     type(energy_balance), intent(inout) :: energy
-    associate (n => num_free)
-      energy%external = energy%external + work(du, old%external, new%external) &
-                        + work(du(n + 1:), old%internal(n + 1:), new%internal(n + 1:)) &
-                        + work(du(n + 1:), old%contact(n + 1:), new%contact(n + 1:)) &
-                        - work(du(n + 1:), old%external(n + 1:), new%external(n + 1:))
+    associate (n => matrix%num_free, part => matrix%part)
+      energy%external = energy%external + work(part, du, old%external, new%external) &
+                        + work(part, du(n + 1:), old%internal(n + 1:), new%internal(n + 1:), n) &
+                        + work(part, du(n + 1:), old%contact(n + 1:), new%contact(n + 1:), n) &
+                        - work(part, du(n + 1:), old%external(n + 1:), new%external(n + 1:), n)
       if (.not. allocated(new%inertia)) return
       energy%external = energy%external &
-                        + work(du(n + 1:), old%inertia(n + 1:), new%inertia(n + 1:)) &
-                        + work(du(n + 1:), old%viscous(n + 1:), new%viscous(n + 1:))
+                        + work(part, du(n + 1:), old%inertia(n + 1:), new%inertia(n + 1:), n) &
+                        + work(part, du(n + 1:), old%viscous(n + 1:), new%viscous(n + 1:), n)
     end associate
   end subroutine add_external
 
   !> Work of the internal forces beyond that of K q.
-  real(rk) function inelastic_work(du, old, new, skipped) result(taken)
+  real(rk) function inelastic_work(part, du, old, new, skipped) result(taken)
+    type(unknown_part), intent(in) :: part
     real(rk), intent(in) :: du(:)
     type(motion), intent(in) :: old, new
     integer, intent(in), optional :: skipped !< unknowns before the first of `du`
     integer :: first
     first = 1
     if (present(skipped)) first = skipped + 1
-    taken = work(du, old%internal(first:) - old%elastic(first:), &
-                 new%internal(first:) - new%elastic(first:))
+    taken = work(part, du, old%internal(first:) - old%elastic(first:), &
+                 new%internal(first:) - new%elastic(first:), skipped)
   end function inelastic_work
 
   !> Change of stored and dissipated energy of guests with a history, beyond 1/2 q K q.
@@ -158,14 +163,14 @@ contains
     type(stored_work), intent(in) :: guests !< of the histories of `now`
     type(dam_system), intent(in) :: system
     type(state), intent(inout) :: now
-    associate (own => now%motion, energy => now%energy)
+    associate (own => now%motion, energy => now%energy, part => system%matrix%part)
       energy%kinetic = 0.0_rk
-      if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(own%v, own%momentum)
+      if (allocated(own%momentum)) energy%kinetic = 0.5_rk*dot(part, own%v, own%momentum)
       energy%strain = system%stored_energy(own%q, own%elastic) + guests%stored
       energy%friction = guests%friction
       energy%fracture = guests%fracture + energy%left_cracking + energy%left_crushing
       energy%crushing = guests%crushing + energy%left_crushing
-      energy%largest = max(energy%largest, idle_share*total(system%diagonal*own%q**2))
+      energy%largest = max(energy%largest, idle_share*total(part, system%diagonal*own%q**2))
       call find_error(energy)
     end associate
   end subroutine set_stored

@@ -10,9 +10,18 @@ module error_in_time
   use global_vectors, only: diagonal, dot
   use step_plan, only: step
   use step_system, only: dam_system
+  use unknown_parts, only: unknown_part
   implicit none
   private
-  public :: find_weights, note_error_in_time
+  public :: motion_norm, make_norm, note_error_in_time
+
+  !> The norm of displacements that masses weight.
+  type :: motion_norm
+    real(rk), allocatable :: mass(:) !< (num_total) at each unknown [kg]
+    type(unknown_part) :: part !< unknowns of this rank
+  contains
+    procedure :: of => norm_of
+  end type motion_norm
 
   !> A rate that oscillates is the largest one times |sin|.
   real(rk), parameter :: top_of_mean = 0.5_rk*acos(-1.0_rk)
@@ -27,13 +36,13 @@ contains
   !> The mass at each unknown: the mean over the unknowns of its node, so that the axes of the deck
   !> make no difference to mass along one direction. Unknowns without mass have no error in time of
   !> their own.
-  subroutine find_weights(system, weights)
+  subroutine make_norm(system, norm)
     type(dam_system), intent(in) :: system
-    real(rk), allocatable, intent(out) :: weights(:) !< (num_total) [kg]
+    type(motion_norm), intent(out) :: norm
+    real(rk) :: weights(system%matrix%num_total)
     real(rk) :: mass(system%numbers%num_nodes)
     integer :: unknowns(system%numbers%num_nodes)
     integer :: i
-    allocate (weights(system%matrix%num_total))
     call diagonal(system%mass_pattern, system%mass_entries, weights)
     mass = 0.0_rk
     unknowns = 0
@@ -42,15 +51,16 @@ contains
         mass(node(i)) = mass(node(i)) + weights(i)
         unknowns(node(i)) = unknowns(node(i)) + 1
       end do
-      weights = mass(node)/unknowns(node)
+      norm%mass = mass(node)/unknowns(node)
     end associate
-  end subroutine find_weights
+    norm%part = system%matrix%part
+  end subroutine make_norm
 
   !> Takes in an increment that has converged, and tells how often the next one is to be doubled or,
   !> below zero, halved.
-  subroutine note_error_in_time(plan, weights, size, before, after, doublings)
+  subroutine note_error_in_time(plan, norm, size, before, after, doublings)
     type(step), intent(in) :: plan
-    real(rk), intent(in) :: weights(:) !< (num_total) [kg]
+    type(motion_norm), intent(in) :: norm
     real(rk), intent(in) :: size !< of the increment [s]
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
@@ -64,11 +74,11 @@ contains
       end if
       if (own%num_known == 0) then
         own%damped = before%energy%damping
-        own%largest = norm_of(weights, before%motion%q)
+        own%largest = norm%of(before%motion%q)
       end if
-      own%largest = max(own%largest, norm_of(weights, after%motion%q))
-      call take_differences(weights, size, before%motion, after%motion, own, third)
-      call average_motion(plan, weights, size, after%motion, third, own)
+      own%largest = max(own%largest, norm%of(after%motion%q))
+      call take_differences(norm, size, before%motion, after%motion, own, third)
+      call average_motion(plan, norm, size, after%motion, third, own)
       own%kinetic = own%kinetic &
                     + 0.5_rk*size*(before%energy%kinetic + after%energy%kinetic)
       damping = damping_rate(own, after%energy%damping)*excess_of_frequency(own)
@@ -79,8 +89,9 @@ contains
   end subroutine note_error_in_time
 
   !> The third derivative of the displacements, from divided differences.
-  subroutine take_differences(weights, size, old, new, own, third)
-    real(rk), intent(in) :: weights(:), size
+  subroutine take_differences(norm, size, old, new, own, third)
+    type(motion_norm), intent(in) :: norm
+    real(rk), intent(in) :: size
     type(motion), intent(in) :: old
     type(motion), intent(inout) :: new
     type(time_accuracy), intent(inout) :: own
@@ -92,7 +103,7 @@ contains
     else
       new%bend = (new%slope - old%slope)/(size + own%size)
       if (own%num_known >= fewest_known - 1) then
-        third = 6.0_rk*norm_of(weights, new%bend - old%bend)/(size + own%size + own%size_before)
+        third = 6.0_rk*norm%of(new%bend - old%bend)/(size + own%size + own%size_before)
       end if
     end if
     own%size_before = own%size
@@ -101,9 +112,10 @@ contains
   end subroutine take_differences
 
   !> Means of the squares of velocity, acceleration and third derivative.
-  subroutine average_motion(plan, weights, size, moving, third, own)
+  subroutine average_motion(plan, norm, size, moving, third, own)
     type(step), intent(in) :: plan
-    real(rk), intent(in) :: weights(:), size
+    type(motion_norm), intent(in) :: norm
+    real(rk), intent(in) :: size
     type(motion), intent(in) :: moving
     real(rk), intent(in) :: third !< norm
     type(time_accuracy), intent(inout) :: own
@@ -111,9 +123,9 @@ contains
     if (own%num_known < fewest_known) return
     share = 1.0_rk - exp(-size/(remembered*plan%first_increment))
     own%velocity_square = (1.0_rk - share)*own%velocity_square &
-                          + share*norm_of(weights, moving%slope)**2
+                          + share*norm%of(moving%slope)**2
     own%acceleration_square = (1.0_rk - share)*own%acceleration_square &
-                              + share*4.0_rk*norm_of(weights, moving%bend)**2
+                              + share*4.0_rk*norm%of(moving%bend)**2
     own%third_square = (1.0_rk - share)*own%third_square + share*third**2
   end subroutine average_motion
 
@@ -128,9 +140,10 @@ contains
   end function excess_of_frequency
 
   !> Norm of displacements.
-  real(rk) function norm_of(weights, q)
-    real(rk), intent(in) :: weights(:), q(:)
-    norm_of = sqrt(max(0.0_rk, dot(weights*q, q)))
+  real(rk) function norm_of(self, q)
+    class(motion_norm), intent(in) :: self
+    real(rk), intent(in) :: q(:) !< (num_total) [m]
+    norm_of = sqrt(max(0.0_rk, dot(self%part, self%mass*q, q)))
   end function norm_of
 
   !> The part of the period by which a method misses it, over (omega dt)^2: of HHT, and of the

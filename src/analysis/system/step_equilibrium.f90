@@ -12,7 +12,7 @@ module step_equilibrium
   use equilibrium_catalogue, only: condensed_solver, full_solver, make_joint_solver
   use joint_forces, only: reference_stiffness
   use joint_iteration, only: closed_tangent
-  use ranks, only: share_error
+  use ranks, only: is_true_everywhere, share_error
   use run_ledger, only: ledger
   use step_system, only: dam_system
   use write_text, only: as_text
@@ -50,6 +50,7 @@ contains
       call make_joint_solver(trim(name), balance)
     end if
     balance%controls = plan%controls
+    balance%part = system%matrix%part
     if (.not. plan%procedure%has_inertia .and. plan%controls%precision == 'MIXED') then
       balance%controls%precision = 'DOUBLE'
     end if
@@ -128,6 +129,7 @@ contains
     call costs%stop()
     if (allocated(error)) return
     balance%costs = costs
+    balance%part = system%matrix%part
     call prepare_equilibrium(model, system, closed, 1.0_rk, balance, error)
   end subroutine factorise_closed
 
@@ -164,7 +166,7 @@ contains
     real(rk), intent(in) :: x(:) !< (num_total) zero except at the supports
     real(rk), intent(inout) :: rhs(:) !< (free unknowns)
     real(rk), allocatable :: product(:)
-    if (.not. any(abs(x) > 0.0_rk)) return
+    if (is_true_everywhere(.not. any(abs(x) > 0.0_rk))) return
     allocate (product(size(x)))
     call multiply(system%matrix, values, x, product)
     rhs = rhs - product(:size(rhs))

@@ -12,6 +12,7 @@ module step_loads
   use assemble_forces, only: assemble_force, inertia_force
   use guest_list, only: guests_of_model
   use guest_type, only: guest, guest_reference
+  use ranks, only: is_true_everywhere
   use run_ledger, only: ledger
   implicit none
   private
@@ -70,8 +71,10 @@ contains
     type(ledger), intent(in) :: costs
     type(guest_reference), allocatable :: guests(:)
     real(rk) :: force(numbers%num_total)
+    logical :: has_inertia
     integer :: i, group
     allocate (groups(0))
+    has_inertia = .not. is_true_everywhere(size(mass) == 0) ! a rank may have no elements
     do i = 1, size(plan%loads)
       associate (item => model%loads(plan%loads(i)%load)%item)
         call costs%start('assemble', item%name, item%kind)
@@ -80,7 +83,7 @@ contains
           groups(group)%uplift = plan%loads(i)%load
         else
           call assemble_force(model, item, numbers, force)
-          if (size(mass) > 0) call add_base_motion(item, numbers, matrix, mass, force)
+          if (has_inertia) call add_base_motion(item, numbers, matrix, mass, force)
           call add_to_group(plan%loads(i), force, groups)
         end if
         call costs%stop()

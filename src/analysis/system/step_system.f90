@@ -25,6 +25,7 @@ module step_system
   use step_damping, only: build_damping_sum, damping_sum
   use step_loads, only: load_group, support, gather_loads, gather_supports
   use run_ledger, only: ledger
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: dam_system, build_structure, build_inertia, build_damping, build_loads, build_origins
@@ -110,7 +111,7 @@ contains
     integer :: k
     do k = 1, size(self%modal, 2)
       associate (u => self%modal(:, k))
-        force = force + dot(u, v)*u
+        force = force + dot(self%matrix%part, u, v)*u
       end associate
     end do
   end subroutine add_modal_force
@@ -182,12 +183,12 @@ contains
     class(dam_system), intent(in) :: self
     real(rk), intent(in) :: q(:) !< (num_total) [m]
     real(rk), intent(in) :: elastic(:) !< (num_total) from find_elastic [N]
-    energy = 0.5_rk*dot(q, elastic)
+    energy = 0.5_rk*dot(self%matrix%part, q, elastic)
     if (allocated(self%origin_force)) then
-      energy = energy - 0.5_rk*dot(q, self%origin_force) + self%origin_energy
+      energy = energy - 0.5_rk*dot(self%matrix%part, q, self%origin_force) + self%origin_energy
     end if
     if (allocated(self%thermal_force)) then
-      energy = energy - 0.5_rk*dot(q, self%thermal_force) + self%thermal_energy
+      energy = energy - 0.5_rk*dot(self%matrix%part, q, self%thermal_force) + self%thermal_energy
     end if
   end function stored_energy
 
@@ -270,20 +271,23 @@ contains
                             system%origin_energy, error)
       call costs%stop()
       if (allocated(error)) return
-      if (system%matrix%is_shared) call share_origins(system)
+      if (system%matrix%is_shared) call share(system%matrix%part, system%origin_force, &
+                                              system%origin_energy)
     end if
     call build_thermal_force(model, now, system, costs)
   end subroutine build_origins
 
-  !> Adds the origins of the elements of all ranks.
-  subroutine share_origins(system)
-    type(dam_system), intent(inout) :: system
-    real(rk) :: energy(1)
-    call add_over_ranks(system%origin_force)
-    energy = system%origin_energy
-    call add_over_ranks(energy)
-    system%origin_energy = energy(1)
-  end subroutine share_origins
+  !> Adds force and energy of the elements of all ranks.
+  subroutine share(part, force, energy)
+    type(unknown_part), intent(in) :: part
+    real(rk), contiguous, intent(inout) :: force(:) !< (num_total) [N]
+    real(rk), intent(inout) :: energy !< [J]
+    real(rk) :: energies(1)
+    call part%add(force)
+    energies = energy
+    call add_over_ranks(energies)
+    energy = energies(1)
+  end subroutine share
 
   !> The force of the thermal strains of a state, where a material expands.
   subroutine build_thermal_force(model, now, system, costs)
@@ -298,6 +302,8 @@ contains
     end if
     call assemble_thermal_force(model, system%numbers, now%heat, now%origin, &
                                 system%thermal_force, system%thermal_energy)
+    if (system%matrix%is_shared) call share(system%matrix%part, system%thermal_force, &
+                                            system%thermal_energy)
     call costs%stop()
   end subroutine build_thermal_force
 

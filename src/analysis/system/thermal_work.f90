@@ -10,6 +10,7 @@ module thermal_work
   use material_points, only: point_state
   use problem_definition, only: problem
   use ranks, only: add_over_ranks
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: add_thermal_work
@@ -18,8 +19,9 @@ contains
 
   !> The elastic stress does its work through the thermal force. What points that are not elastic
   !> lack of it counts too; without it the balance would take it for numerical dissipation.
-  subroutine add_thermal_work(model, before, after)
+  subroutine add_thermal_work(model, part, before, after)
     type(problem), intent(in) :: model
+    type(unknown_part), intent(in) :: part
     type(state), intent(in) :: before
     type(state), intent(inout) :: after
     real(rk) :: elastic, lost
@@ -28,7 +30,7 @@ contains
     if (.not. allocated(after%motion%thermal)) return
     associate (old => before%motion, new => after%motion)
       elastic = new%thermal_energy - old%thermal_energy &
-                - 0.5_rk*dot(old%q + new%q, new%thermal - old%thermal)
+                - 0.5_rk*dot(part, old%q + new%q, new%thermal - old%thermal)
     end associate
     allocate (of_block(size(after%points)), source=0.0_rk)
     do i = 1, size(after%points)

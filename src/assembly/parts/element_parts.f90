@@ -7,7 +7,7 @@ module element_parts
   use dam_mesh, only: fe_mesh
   use errors, only: error_type, raise, system_failed
   use kinds, only: rk
-  use ranks, only: num_ranks
+  use ranks, only: add_over_ranks, is_first_rank, num_ranks, share_error
   implicit none
   private
   public :: divide_elements
@@ -27,20 +27,39 @@ module element_parts
 
 contains
 
-  !> Gives each element with a material to a rank; the other elements to the first one. All ranks
-  !> find the same division.
+  !> Gives each element with a material to a rank; the other elements to the first one. Rank 0
+  !> divides the mesh, because METIS takes more memory than the mesh.
   subroutine divide_elements(mesh, error)
     type(fe_mesh), intent(inout) :: mesh
     type(error_type), allocatable, intent(out) :: error
-    integer(c_int), allocatable :: first(:), node(:), part(:)
-    integer, allocatable :: solid(:)
-    real(c_double), allocatable :: x(:, :) !< (3, solids) centres
-    integer :: k, a, last
+    integer, allocatable :: solid(:), part(:)
+    real(rk), allocatable :: shared(:)
+    integer :: k
     solid = pack([(k, k=1, mesh%num_elements)], mesh%material_of_element > 0)
     allocate (mesh%rank_of_element(mesh%num_elements), source=0)
     if (num_ranks() == 1) return
     if (size(solid) < num_ranks()) return
-    allocate (first(size(solid) + 1), node(8*size(solid)), part(size(solid)), x(3, size(solid)))
+    allocate (shared(size(solid)), source=0.0_rk)
+    if (is_first_rank()) then
+      call divide_solids(mesh, solid, part, error)
+      if (.not. allocated(error)) shared(:) = part
+    end if
+    call share_error(error)
+    if (allocated(error)) return
+    call add_over_ranks(shared)
+    mesh%rank_of_element(solid) = nint(shared)
+  end subroutine divide_elements
+
+  !> The part of each solid.
+  subroutine divide_solids(mesh, solid, part, error)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(in) :: solid(:) !< elements
+    integer, allocatable, intent(out) :: part(:) !< (solids) from 0
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int), allocatable :: first(:), node(:), found(:)
+    real(c_double), allocatable :: x(:, :) !< (3, solids) centres
+    integer :: k, a, last
+    allocate (first(size(solid) + 1), node(8*size(solid)), found(size(solid)), x(3, size(solid)))
     first(1) = 0
     last = 0
     do k = 1, size(solid)
@@ -53,12 +72,12 @@ contains
       x(:, k) = real(centre(mesh%x(:, node(first(k) + 1:last) + 1)), c_double)
     end do
     if (keyway_divide_mesh(int(size(solid), c_int), int(mesh%num_nodes, c_int), first, &
-                           node(:last), x, int(num_ranks(), c_int), part) /= 0) then
+                           node(:last), x, int(num_ranks(), c_int), found) /= 0) then
       call raise(error, 'METIS could not divide the elements among the processes', system_failed)
       return
     end if
-    mesh%rank_of_element(solid) = int(part)
-  end subroutine divide_elements
+    part = int(found)
+  end subroutine divide_solids
 
   !> The mean of some places.
   pure function centre(x)

@@ -11,9 +11,12 @@ module matrix_rows
   use matrix_pattern, only: pattern
   use node_dofs, only: num_directions
   use node_sequence, only: order_nodes
-  use ranks, only: num_ranks, this_rank
+  use node_parts, only: find_owners
+  use part_borders, only: find_part
+  use ranks, only: add_over_ranks, num_ranks, this_rank
   use row_tables, only: row_table
   use unknown_layout, only: own_rows
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: lay_out_rows
@@ -27,10 +30,14 @@ contains
     type(row_table), intent(in) :: cells !< of this rank
     type(pattern), intent(inout) :: matrix
     integer, allocatable :: first_of_node(:)
+    integer :: owner(mesh%num_nodes)
     allocate (matrix%layout)
     matrix%is_shared = .true.
+    call find_owners(mesh, owner)
+    call find_part(mesh, numbers, owner, this_rank(), num_ranks(), matrix%part)
     associate (layout => matrix%layout)
-      call number_rows(mesh, numbers, layout%first_row, layout%row, first_of_node)
+      call number_rows(mesh, numbers, owner, layout%first_row, first_of_node, layout%row)
+      call share_rows(numbers%num_total, matrix%part, layout%row)
       allocate (layout%is_touched(numbers%num_free), source=.false.)
       call touch_unknowns(numbers, cells, layout%is_touched)
       call find_rigid_motions(mesh, numbers, first_of_node, &
@@ -38,58 +45,69 @@ contains
     end associate
   end subroutine lay_out_rows
 
-  !> Numbers the rows of the nodes with free unknowns and of the jumps, rank by rank.
-  subroutine number_rows(mesh, numbers, first_row, row, first_of_node)
+  !> Numbers the rows of this rank: those of its nodes with free unknowns, then those of its jumps.
+  subroutine number_rows(mesh, numbers, owner, first_row, first_of_node, row)
     type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
+    integer, intent(in) :: owner(:) !< (nodes) rank of each node
     integer, allocatable, intent(out) :: first_row(:) !< (ranks + 1) from 0
-    integer, allocatable, intent(out) :: row(:) !< (num_free) from 0
-    integer, allocatable, intent(out) :: first_of_node(:) !< (nodes) from 0; -1: no rows
-    integer :: owner(mesh%num_nodes), sequence(mesh%num_nodes)
-    integer :: rank, k, next, j, first_jump
+    integer, allocatable, intent(out) :: first_of_node(:) !< (nodes) from 0; -1: not here
+    integer, allocatable, intent(out) :: row(:) !< (num_free) from 0; -1: of another rank
+    integer :: sequence(mesh%num_nodes)
+    integer :: k, next, j, first_jump
     logical :: has_rows(mesh%num_nodes)
-    call find_owners(mesh, owner)
     call order_nodes(mesh, sequence)
     first_jump = numbers%num_free - numbers%num_jumps + 1
     has_rows = .false.
     has_rows(numbers%node(:first_jump - 1)) = .true.
-    allocate (first_row(num_ranks() + 1), first_of_node(mesh%num_nodes), row(numbers%num_free))
-    first_of_node = -1
-    next = 0
-    do rank = 0, num_ranks() - 1
-      first_row(rank + 1) = next
-      do k = 1, mesh%num_nodes
-        if (owner(sequence(k)) /= rank .or. .not. has_rows(sequence(k))) cycle
-        first_of_node(sequence(k)) = next
-        next = next + num_directions
-      end do
-      do j = first_jump, numbers%num_free, num_axes
-        if (owner(numbers%node(j)) /= rank) cycle
-        row(j:j + num_axes - 1) = [next, next + 1, next + 2]
-        next = next + num_axes
-      end do
+    has_rows = has_rows .and. owner == this_rank()
+    first_row = starts_of_ranks(num_directions*count(has_rows) + count( &
+                                owner(numbers%node(first_jump:numbers%num_free)) == this_rank()))
+    allocate (first_of_node(mesh%num_nodes), source=-1)
+    allocate (row(numbers%num_free), source=-1)
+    next = first_row(this_rank() + 1)
+    do k = 1, mesh%num_nodes
+      if (.not. has_rows(sequence(k))) cycle
+      first_of_node(sequence(k)) = next
+      next = next + num_directions
     end do
-    first_row(num_ranks() + 1) = next
-    row(:first_jump - 1) = first_of_node(numbers%node(:first_jump - 1)) &
-                           + numbers%direction(:first_jump - 1) - 1
+    do j = 1, first_jump - 1
+      if (has_rows(numbers%node(j))) row(j) = first_of_node(numbers%node(j)) &
+                                              + numbers%direction(j) - 1
+    end do
+    do j = first_jump, numbers%num_free, num_axes
+      if (owner(numbers%node(j)) /= this_rank()) cycle
+      row(j:j + num_axes - 1) = [next, next + 1, next + 2]
+      next = next + num_axes
+    end do
   end subroutine number_rows
 
-  !> The rank of each node.
-  pure subroutine find_owners(mesh, owner)
-    type(fe_mesh), intent(in) :: mesh
-    integer, intent(out) :: owner(:) !< (nodes) from 0
-    integer :: e, a
-    owner = huge(1)
-    do e = 1, mesh%num_elements
-      if (mesh%material_of_element(e) == 0) cycle
-      do a = 1, size(mesh%nodes, 1)
-        associate (node => mesh%nodes(a, e))
-          if (node > 0) owner(node) = min(owner(node), mesh%rank_of_element(e))
-        end associate
-      end do
+  !> The first row of each rank, and the number of all rows, from the rows of this rank.
+  function starts_of_ranks(num_own) result(first)
+    integer, intent(in) :: num_own
+    integer :: first(num_ranks() + 1)
+    real(rk) :: num_rows(num_ranks())
+    integer :: k
+    num_rows = 0.0_rk
+    num_rows(this_rank() + 1) = num_own
+    call add_over_ranks(num_rows)
+    first(1) = 0
+    do k = 1, num_ranks()
+      first(k + 1) = first(k) + nint(num_rows(k))
     end do
-    where (owner == huge(1)) owner = 0
-  end subroutine find_owners
+  end function starts_of_ranks
+
+  !> Takes the rows of unknowns that other ranks own.
+  subroutine share_rows(num_total, part, row)
+    integer, intent(in) :: num_total !< unknowns
+    type(unknown_part), intent(in) :: part
+    integer, intent(inout) :: row(:) !< (num_free)
+    real(rk) :: number(num_total)
+    number = 0.0_rk
+    number(:size(row)) = max(row, 0)
+    call part%add(number)
+    row = nint(number(:size(row)))
+  end subroutine share_rows
 
   !> Marks the free unknowns of some cells.
   pure subroutine touch_unknowns(numbers, cells, is_touched)
@@ -119,6 +137,7 @@ contains
     allocate (rigid(bounds(1):bounds(2), 2*num_directions), source=0.0_rk)
     do j = 1, numbers%num_free - numbers%num_jumps
       direction = numbers%direction(j)
+      if (first_of_node(numbers%node(j)) < 0) cycle
       row = first_of_node(numbers%node(j)) + direction - 1
       if (row < bounds(1) .or. row > bounds(2)) cycle
       x = mesh%x(:, numbers%node(j)) - centre

@@ -105,6 +105,24 @@ void keyway_gather_on_first_rank(const double *own, int length, double *all, int
   free(count);
 }
 
+void keyway_exchange(int num_neighbours, const int *neighbour, const int *first,
+                     const double *sent, double *received)
+{
+  const int number_of_requests = 2 * num_neighbours;
+  MPI_Request *request;
+  if (num_neighbours == 0) return;
+  request = malloc((size_t)number_of_requests * sizeof *request);
+  if (!request) MPI_Abort(MPI_COMM_WORLD, 3);
+  for (int i = 0; i < num_neighbours; i++) {
+    const int count = first[i + 1] - first[i];
+    MPI_Irecv(received + first[i], count, MPI_DOUBLE, neighbour[i], 0, MPI_COMM_WORLD, request + i);
+    MPI_Isend(sent + first[i], count, MPI_DOUBLE, neighbour[i], 0, MPI_COMM_WORLD,
+              request + num_neighbours + i);
+  }
+  MPI_Waitall(number_of_requests, request, MPI_STATUSES_IGNORE);
+  free(request);
+}
+
 int keyway_least_of_ranks(int own)
 {
   int least = own;

@@ -35,6 +35,16 @@ void keyway_gather_on_first_rank(const double *own, int length, double *all, int
   memcpy(all + first[0], own, (size_t)length * sizeof *all);
 }
 
+void keyway_exchange(int num_neighbours, const int *neighbour, const int *first,
+                     const double *sent, double *received)
+{
+  (void)num_neighbours;
+  (void)neighbour;
+  (void)first;
+  (void)sent;
+  (void)received;
+}
+
 int keyway_least_of_ranks(int number) { return number; }
 
 void keyway_share_text(int rank, char *text, int length)

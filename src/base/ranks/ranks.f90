@@ -12,7 +12,7 @@ module ranks
   public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
   public :: exchange_seconds, num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere
   public :: largest_of_ranks, number_of_first_rank, text_of_rank, share_error
-  public :: gather_on_first_rank
+  public :: gather_on_first_rank, exchange
 
   !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
   !> results meanwhile.
@@ -97,6 +97,17 @@ module ranks
       real(c_double), intent(inout) :: all(*)
     end subroutine keyway_gather_on_first_rank
 
+    subroutine keyway_exchange(num_neighbours, neighbour, first, sent, received) bind(c)
+      import :: c_double, c_int
+      implicit none
+      integer(c_int), value :: num_neighbours
+      integer(c_int), intent(in) :: neighbour(num_neighbours), first(num_neighbours + 1)
+      ! allow(assumed-size)
+      real(c_double), intent(in) :: sent(*)
+      ! allow(assumed-size)
+      real(c_double), intent(inout) :: received(*)
+    end subroutine keyway_exchange
+
     function keyway_least_of_ranks(number) result(least) bind(c)
       import :: c_int
       implicit none
@@ -173,6 +184,16 @@ contains
                                      int(size(first) - 1, c_int), int(first, c_int))
   end subroutine gather_on_first_rank
 
+  !> Sends numbers to some ranks, and receives as many from each of them.
+  subroutine exchange(neighbour, first, sent, received)
+    integer, intent(in) :: neighbour(:) !< ranks; each has this one among its neighbours
+    integer, intent(in) :: first(:) !< (neighbours + 1) first number of each neighbour
+    real(rk), contiguous, intent(in) :: sent(:)
+    real(rk), contiguous, intent(inout) :: received(:)
+    call keyway_exchange(int(size(neighbour), c_int), int(neighbour, c_int), &
+                         int(first - 1, c_int), sent, received)
+  end subroutine exchange
+
   !> Whether something holds on all ranks.
   logical function is_true_everywhere(holds)
     logical, intent(in) :: holds
@@ -225,7 +246,9 @@ contains
     length = largest_of_ranks(merge(len(own), 0, rank == this_rank()))
     allocate (character(length) :: text)
     allocate (letters(length), source=' ')
-    if (rank == this_rank()) letters = [(own(i:i), i=1, length)]
+    do i = 1, merge(length, 0, rank == this_rank())
+      letters(i) = own(i:i)
+    end do
     call keyway_share_text(int(rank, c_int), letters, int(length, c_int))
     do i = 1, length
       text(i:i) = letters(i)

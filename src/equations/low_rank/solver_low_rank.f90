@@ -11,6 +11,7 @@ module solver_low_rank
   use kinds, only: rk
   use linear_solver, only: equation_solver
   use matrix_pattern, only: pattern
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: low_rank_solver, add_low_rank
@@ -20,6 +21,7 @@ module solver_low_rank
     real(rk), allocatable :: u(:, :) !< (free unknowns, rank)
     real(rk), allocatable, private :: z(:, :) !< (free unknowns, rank) Z
     type(lu_factor), private :: small !< of I + U^T Z
+    type(unknown_part), private :: part !< unknowns of this rank, where vectors are divided
   contains
     procedure :: analyse, factorise, solve, keep_single, describe_iterations
   end type low_rank_solver
@@ -60,6 +62,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: small(:, :)
     integer :: k
+    self%part = matrix%part
     call self%sparse%factorise(matrix, values, error)
     self%failed_unknown = self%sparse%failed_unknown
     if (allocated(error)) return
@@ -67,7 +70,7 @@ contains
     call self%sparse%solve(self%z, error)
     if (allocated(error)) return
     allocate (small(size(self%u, 2), size(self%u, 2)))
-    call project(self%u, self%z, small)
+    call project(self%part, self%u, self%z, small)
     do k = 1, size(small, 1)
       small(k, k) = 1.0_rk + small(k, k)
     end do
@@ -83,7 +86,7 @@ contains
     real(rk) :: share(size(self%u, 2), size(b, 2))
     call self%sparse%solve_within(self%admissible, b, error)
     if (allocated(error)) return
-    call project(self%u, b, share)
+    call project(self%part, self%u, b, share)
     call solve_factored(self%small, share)
     b = b - matmul(self%z, share)
   end subroutine solve
@@ -104,13 +107,14 @@ contains
   end function describe_iterations
 
   !> U^T B.
-  subroutine project(u, b, product)
+  subroutine project(part, u, b, product)
+    type(unknown_part), intent(in) :: part
     real(rk), intent(in) :: u(:, :), b(:, :)
     real(rk), intent(out) :: product(:, :)
     integer :: i, j
     do j = 1, size(b, 2)
       do i = 1, size(u, 2)
-        product(i, j) = dot(u(:, i), b(:, j))
+        product(i, j) = dot(part, u(:, i), b(:, j))
       end do
     end do
   end subroutine project

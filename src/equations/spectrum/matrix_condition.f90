@@ -7,9 +7,10 @@
 module matrix_condition
   use kinds, only: rk
   use errors, only: error_type
-  use global_vectors, only: diagonal
+  use global_vectors, only: diagonal, largest_entry, norm
   use matrix_pattern, only: pattern
-  use ranks, only: add_over_ranks
+  use ranks, only: gather_rows, this_rank
+  use unknown_layout, only: num_rows, own_rows, row_layout
   use linear_solver, only: equation_solver
   implicit none
   private
@@ -38,30 +39,68 @@ contains
     class(equation_solver), intent(inout) :: factor
     real(rk), intent(out) :: condition
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: root(:), x(:, :), v(:)
+    real(rk), allocatable :: root(:), x(:), v(:)
     integer, allocatable :: sign_of(:)
     integer :: n, kase, kept(3)
     n = matrix%num_free
+    if (matrix%part%is_divided) n = num_rows(matrix%layout)
     condition = 0.0_rk
     if (n == 0) return
-    allocate (root(matrix%num_total), v(n), x(n, 1), sign_of(n))
+    allocate (root(matrix%num_total), v(n), x(n), sign_of(n))
     call diagonal(matrix, values, root)
-    root = sqrt(root(:n))
+    root = sqrt(root(:matrix%num_free))
     kase = 0
     do
-      call dlacn2(n, v, x(:, 1), sign_of, condition, kase, kept)
+      call dlacn2(n, v, x, sign_of, condition, kase, kept)
       if (kase == 0) exit
-      x(:, 1) = root*x(:, 1)
-      call factor%solve_within(solve_residual*norm2(x), x, error)
+      call solve_scaled(matrix, root, factor, x, error)
       if (allocated(error)) return
-      x(:, 1) = root*x(:, 1)
     end do
     condition = condition*scaled_norm(matrix, values, root)
   end subroutine estimate_condition
 
+  !> x = S^-1 x, in place. Where vectors are divided x has the rows of all ranks; rows without an
+  !> unknown keep their entries.
+  subroutine solve_scaled(matrix, root, factor, x, error)
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: root(:) !< (num_free)
+    class(equation_solver), intent(inout) :: factor
+    real(rk), intent(inout) :: x(:) !< (num_free, or rows of all ranks)
+    type(error_type), allocatable, intent(out) :: error
+    real(rk) :: own(size(root), 1)
+    if (matrix%part%is_divided) then
+      own(:, 1) = root*x(matrix%layout%row + 1)
+    else
+      own(:, 1) = root*x
+    end if
+    call factor%solve_within(solve_residual*norm(matrix%part, own(:, 1)), own, error)
+    if (allocated(error)) return
+    own(:, 1) = root*own(:, 1)
+    if (matrix%part%is_divided) then
+      call put_rows(matrix%layout, own(:, 1), x)
+    else
+      x = own(:, 1)
+    end if
+  end subroutine solve_scaled
+
+  !> Puts the own rows of all ranks together.
+  subroutine put_rows(layout, own, x)
+    type(row_layout), intent(in) :: layout
+    real(rk), intent(in) :: own(:) !< (num_free)
+    real(rk), contiguous, intent(inout) :: x(:) !< (rows of all ranks)
+    real(rk), allocatable :: mine(:)
+    integer :: bounds(2), j
+    bounds = own_rows(layout, this_rank())
+    do j = 1, size(own)
+      x(layout%row(j) + 1) = own(j)
+    end do
+    mine = x(bounds(1) + 1:bounds(2) + 1)
+    call gather_rows(layout%first_row, mine, x)
+  end subroutine put_rows
+
   !> |S|_1 from the lower triangle. Of a shared matrix an upper bound: magnitudes of the parts are
   !> added.
-  real(rk) function scaled_norm(matrix, values, root) result(norm)
+  real(rk) function scaled_norm(matrix, values, root) result(largest)
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:)
     real(rk), intent(in) :: root(:) !< (free unknowns) of the diagonal
@@ -76,7 +115,7 @@ contains
         if (i /= j) column(i) = column(i) + entry
       end do
     end do
-    if (matrix%is_shared) call add_over_ranks(column)
-    norm = maxval(column)
+    if (matrix%is_shared) call matrix%part%add(column)
+    largest = largest_entry(matrix%part, column)
   end function scaled_norm
 end module matrix_condition

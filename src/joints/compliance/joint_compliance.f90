@@ -11,6 +11,7 @@ module joint_compliance
   use joint_operator, only: jump_operator
   use point_groups, only: group_list
   use ranks, only: add_over_ranks
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: find_all_blocks, find_compliance, solved_response
@@ -26,6 +27,7 @@ module joint_compliance
     class(equation_solver), pointer :: factor => null() !< of K_0
     type(jump_operator), pointer :: operator => null()
     integer :: num_free = 0
+    type(unknown_part) :: part !< unknowns of this rank, where vectors are divided
   contains
     procedure :: respond
   end type solved_response
@@ -45,7 +47,7 @@ contains
     do row = 1, size(x)
       call spread_row(self%operator, row, x(row), b(:, 1))
     end do
-    call self%factor%solve_within(residual_of_product*norm(b(:, 1)), b, self%failure)
+    call self%factor%solve_within(residual_of_product*norm(self%part, b(:, 1)), b, self%failure)
     if (.not. allocated(self%failure)) call apply_rows(self%operator, b(:, 1), y)
   end subroutine respond
 

@@ -5,7 +5,7 @@ module condensation
   use errors, only: error_type
   use anderson_mixing, only: mixer
   use matrix_pattern, only: pattern
-  use global_vectors, only: distance, norm
+  use global_vectors, only: norm
   use joint_law, only: joint_state
   use joint_points, only: dam_joint
   use joint_rows, only: num_rows
@@ -318,7 +318,7 @@ contains
     end do
     outcome%has_converged = pass <= most_refinements
     if (.not. outcome%has_converged) then
-      force = max(balance%reference_force, norm(balance%rhs), tiny(1.0_rk))
+      force = max(balance%reference_force, norm(self%part, balance%rhs), tiny(1.0_rk))
       outcome%unmet = unmet_criterion(of_solves, residual/force, admissible/force)
       if (.not. is_near) outcome%unmet = unmet_criterion(of_jumps, drift, self%admissible_drift())
     end if
@@ -338,7 +338,7 @@ contains
       self%base = x(:n)
       if (.not. allocated(self%base_force)) allocate (self%base_force(n))
       call self%exact%find_product(self%base, self%base_force)
-      residual = distance(balance%rhs + force(:n), self%base_force)
+      residual = norm(self%part, balance%rhs + force(:n) - self%base_force)
     end associate
   end subroutine find_base
 

@@ -101,6 +101,7 @@ contains
       self%solved%factor => self%factor
       self%solved%operator => self%operator
       self%solved%num_free = num_free
+      self%solved%part = self%part
       self%condensed%blocks%exact => self%solved
       return
     end if
@@ -164,7 +165,7 @@ contains
     if (is_last_pass .or. self%condensed%is_rough) return
     associate (last => passes%drift(1), before => passes%drift(2))
       is_last_pass = 0.0_rk < before .and. last < before .and. &
-                     last*(last/before) <= sure_share*self%admissible_drift()
+                     last**2 <= sure_share*self%admissible_drift()*before
     end associate
   end function is_last_pass
 
@@ -350,7 +351,7 @@ contains
     call self%operator%add_forces(self%weight*excess, x)
     b = reshape(rhs + x(:size(rhs)), [size(rhs), 1])
     call self%costs%start('solve', 'structure', 'solver')
-    call self%solve_with_factor(min(self%admissible, share*norm(b(:, 1))), b, error)
+    call self%solve_with_factor(min(self%admissible, share*norm(self%part, b(:, 1))), b, error)
     call self%costs%stop()
     x = 0.0_rk
     x(:size(rhs)) = b(:, 1)

@@ -19,6 +19,7 @@ module equilibrium
   use run_ledger, only: ledger
   use step_plan, only: step_controls
   use stop_signals, only: is_asked_to_stop
+  use unknown_parts, only: unknown_part
   implicit none
   private
   public :: equilibrium_solver, force_balance, balance_outcome, is_dropped
@@ -73,7 +74,7 @@ module equilibrium
     real(rk) :: correction = 0.0_rk !< Newton correction for the residual, over the increment
     type(unmet_criterion) :: unmet !< of a solution that is within the tolerances of *CONTROLS
     integer :: worst_point = 0 !< joint point with the largest residual
-    integer :: worst_unknown = 0 !< of the largest residual of inelastic solids
+    integer :: worst_node = 0 !< with the largest residual of inelastic solids
     real(rk), allocatable :: history(:) !< residuals of the iterations on inelastic solids
     real(rk) :: size_ratio = 1.0_rk !< requested by a material, over this increment
     character(:), allocatable :: failure !< why a material or uplift requests a smaller increment
@@ -90,6 +91,7 @@ module equilibrium
     !> (free unknowns, rank) U: the matrix is K_eff + U U^T; not allocated for K_eff alone
     real(rk), allocatable :: low_rank(:, :)
     type(jump_operator) :: operator !< of the joints
+    type(unknown_part) :: part !< unknowns of this rank, where vectors are divided
     real(rk) :: weight = 1.0_rk !< of the joint forces
     integer :: num_factorisations = 0
     !> The compliance of joints has the blocks that were left out at first, until the next matrix
@@ -228,7 +230,7 @@ contains
     class(equilibrium_solver), intent(in) :: self
     type(force_balance), intent(in) :: balance
     real(rk) :: force
-    force = norm(balance%rhs)
+    force = norm(self%part, balance%rhs)
     associate (controls => self%controls)
       admissible_residual = controls%residual_tolerance*max(balance%reference_force, force)
       if (balance%is_static .and. force > 0.0_rk) then

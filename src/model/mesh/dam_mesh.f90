@@ -28,6 +28,10 @@ module dam_mesh
     !> (elements) rank that assembles the element; not allocated: there is one rank
     integer, allocatable :: rank_of_element(:)
     logical, allocatable :: is_node_absent(:) !< (nodes) all elements of the node are absent
+    integer, allocatable :: rank_of_law(:) !< (elements) rank that calls its law, where divided
+    !> (nodes) this rank has the unknowns of the node, all ranks have them; not allocated: all ranks
+    !> have those of all nodes
+    logical, allocatable :: is_node_here(:), is_node_common(:)
   end type fe_mesh
 
   !> A set of nodes or elements: positions in the mesh, ascending, each once.

@@ -150,8 +150,11 @@ module step_plan
     logical :: restores_temperature = .false.
     logical :: changes_stage = .false. !< elements come or go, or joints are grouted, at its start
   contains
-    procedure :: default_smallest, follows_accuracy
+    procedure :: default_smallest, follows_accuracy, estimates_by_modes
   end type step
+
+  !> The modes of an estimate cost as much as a few dozen increments.
+  integer, parameter :: least_increments = 500
 
   !> Smallest increments unless the deck names one. They do not depend on the duration of a dynamic
   !> step: a record of 60 s may be cut as often as one of 5 s.
@@ -208,6 +211,14 @@ contains
     follows_accuracy = self%controls%accuracy > 0.0_rk .and. self%procedure%has_inertia &
                        .and. .not. self%is_direct
   end function follows_accuracy
+
+  !> Whether modes show the errors of linear solids: the step is so long that the estimate takes
+  !> less than 5 % of its time.
+  pure logical function estimates_by_modes(self)
+    class(step), intent(in) :: self
+    estimates_by_modes = self%procedure%has_inertia .and. self%controls%estimates_errors &
+                         .and. self%duration > least_increments*self%first_increment
+  end function estimates_by_modes
 
   !> The smallest increment where the deck names none. A static step whose first increment is small
   !> can be cut as well.

@@ -1,6 +1,6 @@
 !> A checkpoint of a run: the state, the record, the summary, and where the files of results end.
 module run_checkpoint
-  use analysis_state, only: state
+  use analysis_state, only: motion, state
   use checkpoint_files, only: checkpoint_path, new_checkpoint_path, new_journal_path, &
                               keep_checkpoint, keep_journal, take_journal
   use checkpoint_faces, only: renew_faces, save_faces
@@ -18,7 +18,14 @@ module run_checkpoint
   use writer_catalogue, only: writer_item
   implicit none
   private
-  public :: run_position, save_checkpoint, load_checkpoint, load_chosen_state, restart_journals
+  public :: run_position, label_of, save_checkpoint, load_checkpoint
+  public :: load_chosen_state, restart_journals
+
+  !> Where a checkpoint is written, and its number in the run.
+  type :: checkpoint_label
+    character(:), allocatable :: stem !< folder and name of the job
+    integer :: number = 0 !< from 1
+  end type checkpoint_label
 
   !> What a checkpoint stores of a run.
   type :: run_position
@@ -32,33 +39,42 @@ module run_checkpoint
 
 contains
 
-  !> Writes the checkpoint, and starts the journal of what later writes replace in job.h5.
-  subroutine save_checkpoint(stem, number, model, now, record, summary, writers, error)
+  !> The label of a checkpoint.
+  function label_of(stem, number) result(label)
     character(*), intent(in) :: stem !< folder and name of the job
-    integer, intent(in) :: number !< of the checkpoint, from 1
+    integer, intent(in) :: number !< from 1
+    type(checkpoint_label) :: label
+    label%stem = stem
+    label%number = number
+  end function label_of
+
+  !> Writes the checkpoint, and starts the journal of what later writes replace in job.h5.
+  subroutine save_checkpoint(label, model, now, record, summary, writers, error, whole)
+    type(checkpoint_label), intent(in) :: label
     type(problem), intent(in) :: model
     type(state), intent(in) :: now
     type(run_record), intent(in) :: record
     type(run_summary), intent(in) :: summary
     type(writer_item), intent(inout) :: writers(:)
     type(error_type), allocatable, intent(out) :: error
+    type(motion), intent(in), optional :: whole !< of all ranks, where vectors are divided
     type(error_type), allocatable :: failure
     type(hdf5_store) :: file
-    call file%create(new_checkpoint_path(stem))
-    call file%put('number', number)
+    call file%create(new_checkpoint_path(label%stem))
+    call file%put('number', label%number)
     call file%put('step', now%step)
     call save_identity(model, file)
     call save_faces(record%skin, file)
-    call save_state(now, file, error)
+    call save_state(now, file, error, whole)
     if (.not. allocated(error)) call save_record(record, file, error)
     if (.not. allocated(error)) call save_summary(summary, file, error)
     if (.not. allocated(error)) call save_positions(writers, file, error)
     call file%close(failure)
     call keep_first(error, failure)
-    if (.not. allocated(error)) call start_journals(stem, number, writers, error)
-    if (.not. allocated(error)) call keep_checkpoint(stem, error)
-    if (.not. allocated(error)) call keep_journal(stem, error)
-    if (allocated(error)) call remove_file(new_checkpoint_path(stem))
+    if (.not. allocated(error)) call start_journals(label%stem, label%number, writers, error)
+    if (.not. allocated(error)) call keep_checkpoint(label%stem, error)
+    if (.not. allocated(error)) call keep_journal(label%stem, error)
+    if (allocated(error)) call remove_file(new_checkpoint_path(label%stem))
   end subroutine save_checkpoint
 
   !> Starts the journal of the last checkpoint anew, when a run goes on from there. Then what has

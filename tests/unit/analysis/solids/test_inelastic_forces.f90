@@ -23,11 +23,13 @@ program test_inelastic_forces
   use row_model, only: make_row
   use softening_law, only: damage_law, put_law
   use testing, only: test_log, check, check_close
+  use unknown_parts, only: unknown_part
   implicit none
 
   type(test_log) :: log
   type(problem), target :: model
   type(numbering) :: numbers
+  type(unknown_part) :: part
   type(pattern) :: matrix, full
   type(point_state), allocatable :: old(:), new(:)
   type(block_answer), allocatable :: answers(:)
@@ -90,7 +92,7 @@ contains
     real(rk), allocatable :: no_origin(:, :)
     call numbers%expand(q, u)
     call update_points(model, u, no_origin, time_increment(tangent=tangent), old, new, answers)
-    call sum_excess(model, numbers, answers, zero_vectors(model%mesh%num_nodes), excess)
+    call sum_excess(model, numbers, part, answers, zero_vectors(model%mesh%num_nodes), excess)
   end subroutine find_excess
 
   subroutine elastic_points_release_nothing(log)
@@ -160,7 +162,7 @@ contains
     call find_excess(field(3.0e-4_rk), secant_tangent, excess)
     call open_answers(model%inelastic, others)
     call recall_points(model, new, others)
-    call sum_excess(model, numbers, others, zero_vectors(model%mesh%num_nodes), recalled)
+    call sum_excess(model, numbers, part, others, zero_vectors(model%mesh%num_nodes), recalled)
     call check(log, all(abs(excess - recalled) <= 0.0_rk), 'excess forces are recalled')
     do i = 1, size(new)
       call model%inelastic(i)%add_work(new(i), total)

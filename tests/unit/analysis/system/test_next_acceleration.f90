@@ -2,14 +2,17 @@
 program test_next_acceleration
   use analysis_state, only: motion
   use kinds, only: rk
+  use matrix_pattern, only: pattern
   use next_acceleration, only: expected_acceleration, find_trend
   use testing, only: check_close, test_log
   implicit none
   type(test_log) :: log
+  type(pattern) :: matrix
   integer, parameter :: n = 7 !< free unknowns; one more is prescribed
   !> Round-off of the least squares of two vectors that are not parallel.
   real(rk), parameter :: roundoff = 1.0e-12_rk
   log%suite = 'next_acceleration'
+  matrix%num_free = n
   call alternates()
   call decays()
   call grows()
@@ -52,8 +55,8 @@ contains
     one = shape_of(1)
     old%a = [one, 9.0_rk]
     new%a = [-0.5_rk*one, 9.0_rk]
-    call find_trend(old, new, n)
-    call check_close(log, maxval(abs(expected_acceleration(new, n) - 0.25_rk*one)), 0.0_rk, &
+    call find_trend(old, new, matrix)
+    call check_close(log, maxval(abs(expected_acceleration(new, matrix) - 0.25_rk*one)), 0.0_rk, &
                      roundoff, 'starts')
   end subroutine starts
 
@@ -67,9 +70,9 @@ contains
     do k = 2, 3
       old = new
       new%a = [past((k - 1)*n + 1:k*n), 9.0_rk]
-      call find_trend(old, new, n)
+      call find_trend(old, new, matrix)
     end do
-    a = expected_acceleration(new, n)
+    a = expected_acceleration(new, matrix)
   end function after
 
   !> Some vector.

@@ -1,0 +1,153 @@
+!> Divides the nodes among the ranks: a rank has the unknowns of the nodes of its elements. Nodes of
+!> joints, ties, springs, added mass and other effects that couple nodes are on all ranks.
+module node_parts
+  use dam_mesh, only: fe_mesh, node_tie
+  use guest_history, only: history
+  use guest_list, only: ties_of
+  use kinds, only: rk
+  use problem_definition, only: problem
+  use ranks, only: add_over_ranks, gather_on_first_rank, is_first_rank, num_ranks, &
+                   number_of_first_rank, this_rank
+  use row_tables, only: group_by_key, row_table
+  use step_plan, only: step
+  implicit none
+  private
+  public :: divide_nodes, find_owners, gather_field, find_largest, vector_at
+
+contains
+
+  !> Marks the nodes of this rank, where vectors are divided.
+  subroutine divide_nodes(model)
+    type(problem), intent(inout) :: model !< with a rank for each element
+    logical, allocatable :: is_common(:)
+    integer :: e, a, i
+    if (num_ranks() == 1) return
+    if (needs_whole_vectors(model)) return
+    call mark_common(model, is_common)
+    associate (mesh => model%mesh)
+      mesh%rank_of_law = mesh%rank_of_element
+      do i = 1, size(model%inelastic)
+        mesh%rank_of_law(model%inelastic(i)%elements) = model%inelastic(i)%rank
+      end do
+      mesh%is_node_here = is_common
+      do e = 1, mesh%num_elements
+        if (all([mesh%rank_of_element(e), mesh%rank_of_law(e)] /= this_rank())) cycle
+        do a = 1, size(mesh%nodes, 1)
+          if (mesh%nodes(a, e) > 0) mesh%is_node_here(mesh%nodes(a, e)) = .true.
+        end do
+      end do
+      call move_alloc(is_common, mesh%is_node_common)
+    end associate
+  end subroutine divide_nodes
+
+  !> Whether the model has effects whose vectors are not divided yet.
+  logical function needs_whole_vectors(model) result(needs_whole)
+    type(problem), intent(in) :: model
+    class(history), allocatable :: own
+    integer :: i
+    associate (mesh => model%mesh)
+      needs_whole = any([(.not. any(mesh%rank_of_element == i .and. mesh%material_of_element > 0), &
+                          i=0, num_ranks() - 1)])
+    end associate
+    do i = 1, size(model%steps)
+      associate (plan => model%steps(i))
+        needs_whole = needs_whole .or. plan%procedure%scheme == 'REDUCED'
+      end associate
+    end do
+    do i = 1, size(model%guests)
+      call model%guests(i)%item%start_history(model%mesh, own)
+      needs_whole = needs_whole .or. allocated(own)
+    end do
+  end function needs_whole_vectors
+
+  !> Marks the nodes that joints, ties, guests and loads couple, and those of elements without
+  !> material.
+  subroutine mark_common(model, is_common)
+    type(problem), intent(in) :: model
+    logical, allocatable, intent(out) :: is_common(:) !< (nodes)
+    type(node_tie), allocatable :: ties(:)
+    type(row_table) :: cells
+    integer :: i
+    allocate (is_common(model%mesh%num_nodes), source=.false.)
+    do i = 1, size(model%joints)
+      is_common(model%joints(i)%node) = .true.
+    end do
+    call ties_of(model%guests, ties)
+    do i = 1, size(ties)
+      is_common(ties(i)%node) = .true.
+      is_common(ties(i)%item) = .true.
+    end do
+    do i = 1, size(model%guests)
+      call model%guests(i)%item%add_cells(cells)
+    end do
+    do i = 1, size(model%loads)
+      call model%loads(i)%item%add_cells(cells)
+    end do
+    call cells%finish()
+    is_common(cells%item) = .true.
+    do i = 1, model%mesh%num_elements
+      if (model%mesh%material_of_element(i) > 0) cycle
+      is_common(pack(model%mesh%nodes(:, i), model%mesh%nodes(:, i) > 0)) = .true.
+    end do
+  end subroutine mark_common
+
+  !> The rank that owns each node: the lowest one with an element at it, else the first.
+  pure subroutine find_owners(mesh, owner)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(out) :: owner(:) !< (nodes) from 0
+    integer :: e, a
+    owner = huge(1)
+    do e = 1, mesh%num_elements
+      if (mesh%material_of_element(e) == 0) cycle
+      do a = 1, size(mesh%nodes, 1)
+        associate (node => mesh%nodes(a, e))
+          if (node > 0) owner(node) = min(owner(node), mesh%rank_of_element(e))
+        end associate
+      end do
+    end do
+    where (owner == huge(1)) owner = 0
+  end subroutine find_owners
+
+  !> Puts a field together on the first rank, where the ranks have it at their nodes.
+  subroutine gather_field(mesh, field)
+    type(fe_mesh), intent(in) :: mesh
+    real(rk), intent(inout) :: field(:, :) !< (components, nodes)
+    type(row_table) :: nodes !< of each rank
+    integer :: owner(mesh%num_nodes)
+    real(rk), allocatable :: own(:), all(:)
+    if (.not. allocated(mesh%is_node_here)) return
+    call find_owners(mesh, owner)
+    call group_by_key(owner + 1, num_ranks(), nodes)
+    associate (list => nodes%row(this_rank() + 1))
+      own = reshape(field(:, list), [size(field, 1)*size(list)])
+    end associate
+    allocate (all(merge(size(field), 0, this_rank() == 0)))
+    call gather_on_first_rank(own, size(field, 1)*(nodes%first - 1), all)
+    if (this_rank() == 0) field(:, nodes%item) = reshape(all, shape(field))
+  end subroutine gather_field
+
+  !> The node with the largest vector of a field, and this vector, on all ranks.
+  subroutine find_largest(field, node, vector)
+    real(rk), intent(in) :: field(:, :) !< (3, nodes), on the first rank
+    integer, intent(out) :: node
+    real(rk), intent(out) :: vector(3)
+    node = number_of_first_rank(maxloc(field(1, :)**2 + field(2, :)**2 + field(3, :)**2, dim=1))
+    vector = 0.0_rk
+    if (is_first_rank()) vector = field(:, node)
+    call add_over_ranks(vector)
+  end subroutine find_largest
+
+  !> The vector of a field at a node, on all ranks: that of the ranks that have the node.
+  function vector_at(mesh, node, field) result(vector)
+    type(fe_mesh), intent(in) :: mesh
+    integer, intent(in) :: node
+    real(rk), intent(in) :: field(:, :) !< (3, nodes), or at the nodes of the rank
+    real(rk) :: vector(3), sum_of_ranks(4)
+    vector = field(:, node)
+    if (.not. allocated(mesh%is_node_here)) return
+    sum_of_ranks = 0.0_rk
+    if (mesh%is_node_here(node)) sum_of_ranks = [vector, 1.0_rk]
+    call add_over_ranks(sum_of_ranks)
+    vector = sum_of_ranks(:3)/sum_of_ranks(4)
+  end function vector_at
+end module node_parts
