@@ -9,9 +9,12 @@ import h5py
 import make_dam
 import numpy as np
 import pytest
+from brick_decks import elastic
 from heat_decks import brick, lines_of, model, warm
 from joint_decks import Block, amplitude, dynamic, static, weight
-from rank_decks import OUTPUT, QUAKE, SPRINGS, BlockOnRock
+from keyway_tools.box_mesh import box_mesh, stretched
+from keyway_tools.deck_text import mesh_deck
+from rank_decks import MOTION, OUTPUT, QUAKE, SPRINGS, WEIGHT, BlockOnRock
 from test_grouting import BEFORE, BONDED, PUSH, SAWN, bar, ends_of_steps, move
 from test_motion_errors import of_displacement, tower
 from test_ranks import worst_difference
@@ -105,6 +108,24 @@ def opened_dam(folder: Path, arc: int = 10) -> str:
     return deck.replace("INPUT=dam_motion", f"INPUT={folder}/dam_motion")
 
 
+def lifts() -> str:
+    """A column of eight lifts of which the lowest two are there, under its weight and in motion.
+    Ranks of the others have elements, but none that is present.
+    """
+    mesh, number = box_mesh((1, 1, 8), stretched((4.0, 4.0, 24.0)))
+    mesh.brick_sets = {"BODY": np.arange(8)}
+    mesh.element_sets = {"LATER": np.arange(2, 8)}
+    mesh.node_sets = {"BED": number[:, :, 0].ravel(), "TOP": number[:, :, 2].ravel()}
+    steps = (
+        "*STEP\n*STATIC\n*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nLATER\n"
+        f"*DLOAD\nBODY, GRAV, 9.81, 0., 0., -1.\n{OUTPUT}*END STEP\n"
+        "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.1\n"
+        f"*BASE MOTION, DOF=1, AMPLITUDE=QUAKE\n{OUTPUT}*END STEP\n"
+    )
+    cards = elastic(3e10, 0.2, 2400.0) + "*BOUNDARY\nBED, 1, 3\n" + QUAKE
+    return mesh_deck(mesh, {"BODY": "C3D8"}, "") + cards + steps
+
+
 def warmed() -> str:
     """A held brick with a field of temperatures."""
     blocks = brick((4, 3, 3))
@@ -142,6 +163,7 @@ FEATURES: dict[str, Callable[[], str]] = {
     "modes": modes,
     "modal damping": modal_damping,
     "temperature": warmed,
+    "lifts that are absent in motion": lifts,
 }
 
 
@@ -306,6 +328,27 @@ def test_any_number_of_ranks_goes_on(keyway, on_ranks, first, second):
     on_ranks(first)(part)
     source = on_ranks(first).folder
     program = on_ranks(second)
+    if program.folder != source:
+        (source / "results_job").rename(program.folder / "results_job")
+    size, place = worst_difference(plain, program(full, "--continue"))
+    assert size <= 1e-8, place
+
+
+@pytest.mark.parametrize(("first", "second"), [(2, 3), (3, 0), (0, 2), (4, 2)])
+@pytest.mark.parametrize("deck", ["ties", "joints"])
+def test_goes_on_in_the_middle_of_a_step(keyway, on_ranks, deck, first, second):
+    """A run that ends after five increments of motion goes on after the third with other ranks:
+    the checkpoint has the unknowns of all ranks in the order of one process.
+    """
+    full = rocking() if deck == "joints" else BlockOnRock().deck(QUAKE + WEIGHT + MOTION)
+    full = full.replace(", INC=1000000", "")
+    last = full.rindex("*END STEP")
+    full = full[:last] + "*RESTART, WRITE, FREQUENCY=3\n" + full[last:]
+    name = full.rindex("*STEP, NAME=") + len("*STEP, NAME=")
+    end = full.index("\n", name)
+    plain = keyway(full, "-j", "1")
+    on_ranks(first)(full[:end] + ", INC=5" + full[end:], code=1)
+    source, program = on_ranks(first).folder, on_ranks(second)
     if program.folder != source:
         (source / "results_job").rename(program.folder / "results_job")
     size, place = worst_difference(plain, program(full, "--continue"))
