@@ -34,6 +34,7 @@ contains
     type(nodal_points) :: points
     type(linear_links) :: links
     type(dof_map) :: dofs
+    logical :: is_whole
     integer :: e, k
     dofs = displacement_dofs(mesh%num_nodes)
     allocate (is_used(mesh%num_nodes), is_fixed(size(dofs%components), mesh%num_nodes))
@@ -56,16 +57,18 @@ contains
     call link_nodes(dofs, points, ties, is_used, is_fixed, links, error)
     if (allocated(error)) return
     call mark_last(joints, links%first_jump, is_used, links%is_last)
-    if (.not. present(of_all_ranks)) call keep_own(mesh, is_used)
+    is_whole = .false.
+    if (present(of_all_ranks)) is_whole = of_all_ranks
+    if (.not. is_whole) call leave_others(mesh, is_used)
     call number_unknowns(dofs, is_used, is_fixed, links, numbers, error)
   end subroutine number_step
 
   !> Leaves the nodes of other ranks out, where vectors are divided.
-  pure subroutine keep_own(mesh, is_used)
+  pure subroutine leave_others(mesh, is_used)
     type(fe_mesh), intent(in) :: mesh
     logical, intent(inout) :: is_used(:) !< (nodes)
     if (allocated(mesh%is_node_here)) is_used = is_used .and. mesh%is_node_here
-  end subroutine keep_own
+  end subroutine leave_others
 
   !> Marks nodes of joint elements that supports hold in all directions: a base without solids. It
   !> moves as the supports do, and has their reactions. Nodes whose solids are absent are no base.

@@ -205,15 +205,17 @@ contains
     u = zero_vectors(model%mesh%num_nodes)
     allocate (on_blocks(6*task%blocks%num_blocks))
     call external_force(system%groups, model%amplitudes, when, force)
+    where (.not. system%matrix%part%owns(size(force))) force = 0.0_rk ! another rank has it
     do b = 1, task%blocks%num_blocks
       do k = 1, 6
         motion = 0.0_rk
         motion(k) = 1.0_rk
         call move_block(model, task%blocks, b, motion, u)
         call restrict(system%numbers, model%joints, u, q)
-        on_blocks(6*(b - 1) + k) = dot(system%matrix%part, force, q)
+        on_blocks(6*(b - 1) + k) = dot_product(force, q)
       end do
     end do
+    call system%matrix%part%add_shares(on_blocks)
     load = matmul(on_blocks, task%free)
   end subroutine sum_loads
 

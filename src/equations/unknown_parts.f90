@@ -89,7 +89,8 @@ contains
     run(2, :) = min(run(2, :), length)
   end function runs_within
 
-  !> The own ones of some unknowns, for products and norms of vectors over these.
+  !> Which of some unknowns this rank owns: for products and norms of vectors over these unknowns,
+  !> not for `add`.
   pure function of_rows(self, rows) result(part)
     class(unknown_part), intent(in) :: self
     integer, intent(in) :: rows(:) !< unknowns, ascending

@@ -48,6 +48,19 @@ def test_free_body(keyway, on_ranks, solver):
     assert run.json["status"] == "stopped"
 
 
+@pytest.mark.parametrize("solver", ["DIRECT", "ITERATIVE"])
+def test_free_body_without_mass(on_ranks, solver):
+    """A block without mass that nothing holds, with a force in motion: no rank knows the place, and
+    none waits for it.
+    """
+    motion = MOTION.replace("*BASE", "*CLOAD\n45, 1, 1e4\n*BASE", 1)
+    block = BlockOnRock((2, 2, 4), (2, 2, 2), coupling="")
+    deck = block.deck(QUAKE + motion).replace("*DENSITY\n2400.0\n", "")
+    run = on_ranks(2)(deck, "--solver", solver, code=1)
+    assert "free to move" in run.stderr
+    assert run.json["status"] == "stopped"
+
+
 @pytest.mark.parametrize("option", [(), ("--check",)], ids=["run", "check"])
 @pytest.mark.parametrize("precision", ["SINGLE", "MIXED"])
 def test_single_precision_is_for_one_process(keyway, on_ranks, option, precision):

@@ -68,6 +68,7 @@ TYPES = (
     of_state("increment_status", STATE, "status"),
     of_state("energy_balance", STATE, "energy", ENERGY_ARCHIVE),
     of_state("motion", STATE, "motion", MOTION_ARCHIVE),
+    Saved("motion", STATE, (("src/analysis/state/motion_parts.f90", "gather_motion"),)),
     of_state("modal_motion", STATE, "modal", MOTION_ARCHIVE),
     of_state("reduction_status", STATE, "reduction"),
     of_state("time_accuracy", STATE, "accuracy"),

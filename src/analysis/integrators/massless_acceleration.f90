@@ -211,7 +211,7 @@ contains
     real(rk) :: largest
     largest = largest_entry(matrix%part, abs(z))
     place = -1
-    if (size(z) > 0 .and. maxval(abs(z)) >= largest) place = maxloc(abs(z), 1)
+    if (size(z) > 0 .and. .not. maxval(abs(z)) < largest) place = max(1, maxloc(abs(z), 1))
   end function place_of_largest
 
   !> z = P^-1 M P^-1 rest, and rest . z.

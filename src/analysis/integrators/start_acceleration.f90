@@ -60,6 +60,7 @@ contains
     real(rk), intent(inout) :: a(:) !< (num_total) [m/s2]
     type(error_type), allocatable, intent(out) :: error
     real(rk), allocatable :: stiffness(:)
+    character(:), allocatable :: place
     real(rk) :: eps
     logical :: leaves_open
     integer :: trial, worst
@@ -79,13 +80,14 @@ contains
       leaves_open = .false.
     end do
     if (.not. is_final(worst, error)) then
-      call name_place(text_of_place(model, system, worst), error)
+      place = text_of_place(model, system, worst)
+      if (place /= '') call name_place(place, error) ! else the error of a divided matrix
     else if (.not. allocated(error)) then
       call leave_out_fast(system%matrix, system%mass, (dt/fastest_motion)**2, stiffness, a, error)
     end if
   end subroutine find_constrained
 
-  !> The place of an unknown in words, from the rank that has it.
+  !> The place of an unknown in words, from the rank that has it; '' where none has one.
   function text_of_place(model, system, unknown) result(text)
     type(problem), intent(in) :: model
     type(dam_system), intent(in) :: system
@@ -95,7 +97,7 @@ contains
     text = ''
     if (unknown > 0) text = system%numbers%describe(unknown, model%mesh%node_id)
     rank = largest_of_ranks(merge(this_rank(), -1, unknown > 0))
-    text = text_of_rank(rank, text)
+    if (rank >= 0) text = text_of_rank(rank, text)
   end function text_of_place
 
   !> Whether other joints would not help: an acceleration is found, or the system has failed. A

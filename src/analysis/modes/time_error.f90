@@ -43,7 +43,7 @@ module time_error
     !> (supports, modes) displacement of a mode relative to that by supports at rest, per
     !> displacement of a support, and force that the support takes from it, per its acceleration
     real(rk), allocatable :: by_support(:, :), support_mass(:, :)
-    type(unknown_part) :: part !< unknowns of this rank; `massive` and supports are own ones of it
+    type(unknown_part) :: part !< of this rank: `massive` and the supports are unknowns that it owns
   end type error_modes
 
 contains

@@ -80,6 +80,8 @@ contains
     if (now%step == 0 .or. .not. allocated(model%mesh%is_node_here)) return
     if (.not. allocated(now%motion%q)) return
     call find_places(model, now%step, numbers, place, num_free)
+    ! A motion of another step is left as it is; `reopen_step` refuses it.
+    if (size(now%motion%q) < maxval([0, place])) return
     associate (own => now%motion)
       call take(place, own%q)
       call take(place, own%v)

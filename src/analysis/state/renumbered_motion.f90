@@ -7,6 +7,7 @@ module renumbered_motion
   use errors, only: error_type
   use kinds, only: rk
   use problem_definition, only: problem
+  use ranks, only: is_true_everywhere
   use step_plan, only: step_before, step_fixity
   implicit none
   private
@@ -41,7 +42,7 @@ contains
     if (.not. allocated(error) .and. old%num_total == size(last%q)) then
       call match(old, numbers, place)
     end if
-    if (allocated(place)) then
+    if (is_true_everywhere(allocated(place))) then
       call take_places(place, last)
       call release_supports(place > old%num_free, passed_on, last)
     else

@@ -8,7 +8,8 @@ module state_transfer
   use analysis_state, only: state, motion
   use joint_operator, only: jump_operator
   use joint_forces, only: gather_tractions
-  use node_parts, only: gather_field
+  use node_parts, only: gather_at_nodes, list_own_nodes
+  use row_tables, only: row_table
   implicit none
   private
   public :: start_motion, store_motion, restrict, sum_contact
@@ -111,6 +112,7 @@ contains
     type(fe_mesh), intent(in) :: mesh
     type(numbering), intent(in) :: numbers
     type(state), intent(inout) :: now
+    type(row_table) :: nodes
     real(rk) :: residual(numbers%num_free + 1:numbers%num_total)
     associate (own => now%motion, first => numbers%num_free + 1)
       call numbers%expand(own%q, now%u)
@@ -124,9 +126,11 @@ contains
       end if
       call numbers%expand_prescribed(residual, now%reaction)
     end associate
-    call gather_field(mesh, now%u)
-    if (allocated(now%v)) call gather_field(mesh, now%v)
-    if (allocated(now%a)) call gather_field(mesh, now%a)
-    call gather_field(mesh, now%reaction)
+    if (.not. allocated(mesh%is_node_here)) return
+    call list_own_nodes(mesh, nodes)
+    call gather_at_nodes(nodes, now%u)
+    if (allocated(now%v)) call gather_at_nodes(nodes, now%v)
+    if (allocated(now%a)) call gather_at_nodes(nodes, now%a)
+    call gather_at_nodes(nodes, now%reaction)
   end subroutine store_motion
 end module state_transfer

@@ -55,7 +55,6 @@ contains
     do i = first_step(now), size(model%steps)
       call make_integrator(model%steps(i)%procedure, method)
       if (i == now%step .and. now%has_opened_step) then
-        call show_stage(model, i)
         call reopen_step(model, model%steps(i), method, now, results, error)
       else
         call enter_stage(model, i, now, error)

@@ -4,6 +4,7 @@ module node_parts
   use dam_mesh, only: fe_mesh, node_tie
   use guest_history, only: history
   use guest_list, only: ties_of
+  use joint_points, only: dam_joint
   use kinds, only: rk
   use problem_definition, only: problem
   use ranks, only: add_over_ranks, gather_on_first_rank, is_first_rank, num_ranks, &
@@ -12,7 +13,8 @@ module node_parts
   use step_plan, only: step
   implicit none
   private
-  public :: divide_nodes, find_owners, gather_field, find_largest, vector_at
+  public :: divide_nodes, find_owners, find_largest, vector_at
+  public :: gather_field, list_own_nodes, gather_at_nodes
 
 contains
 
@@ -26,9 +28,11 @@ contains
     call mark_common(model, is_common)
     associate (mesh => model%mesh)
       mesh%rank_of_law = mesh%rank_of_element
-      do i = 1, size(model%inelastic)
-        mesh%rank_of_law(model%inelastic(i)%elements) = model%inelastic(i)%rank
-      end do
+      if (allocated(model%inelastic)) then
+        do i = 1, size(model%inelastic)
+          mesh%rank_of_law(model%inelastic(i)%elements) = model%inelastic(i)%rank
+        end do
+      end if
       mesh%is_node_here = is_common
       do e = 1, mesh%num_elements
         if (all([mesh%rank_of_element(e), mesh%rank_of_law(e)] /= this_rank())) cycle
@@ -70,7 +74,7 @@ contains
     integer :: i
     allocate (is_common(model%mesh%num_nodes), source=.false.)
     do i = 1, size(model%joints)
-      is_common(model%joints(i)%node) = .true.
+      call mark_joint(model%joints(i), is_common)
     end do
     call ties_of(model%guests, ties)
     do i = 1, size(ties)
@@ -90,6 +94,19 @@ contains
       is_common(pack(model%mesh%nodes(:, i), model%mesh%nodes(:, i) > 0)) = .true.
     end do
   end subroutine mark_common
+
+  !> Marks the nodes of a joint, in all stages.
+  pure subroutine mark_joint(joint, is_marked)
+    type(dam_joint), intent(in) :: joint
+    logical, intent(inout) :: is_marked(:) !< (nodes)
+    integer :: k
+    is_marked(joint%node) = .true.
+    if (.not. allocated(joint%parts)) return
+    if (.not. allocated(joint%parts%rows)) return
+    do k = 1, size(joint%parts%rows)
+      is_marked(joint%parts%rows(k)%node) = .true.
+    end do
+  end subroutine mark_joint
 
   !> The rank that owns each node: the lowest one with an element at it, else the first.
   pure subroutine find_owners(mesh, owner)
@@ -112,19 +129,33 @@ contains
   subroutine gather_field(mesh, field)
     type(fe_mesh), intent(in) :: mesh
     real(rk), intent(inout) :: field(:, :) !< (components, nodes)
-    type(row_table) :: nodes !< of each rank
-    integer :: owner(mesh%num_nodes)
-    real(rk), allocatable :: own(:), all(:)
+    type(row_table) :: nodes
     if (.not. allocated(mesh%is_node_here)) return
+    call list_own_nodes(mesh, nodes)
+    call gather_at_nodes(nodes, field)
+  end subroutine gather_field
+
+  !> The nodes that each rank owns.
+  subroutine list_own_nodes(mesh, nodes)
+    type(fe_mesh), intent(in) :: mesh
+    type(row_table), intent(out) :: nodes !< of each rank
+    integer :: owner(mesh%num_nodes)
     call find_owners(mesh, owner)
     call group_by_key(owner + 1, num_ranks(), nodes)
+  end subroutine list_own_nodes
+
+  !> The same for several fields, with the nodes of `list_own_nodes`.
+  subroutine gather_at_nodes(nodes, field)
+    type(row_table), intent(in) :: nodes
+    real(rk), intent(inout) :: field(:, :) !< (components, nodes)
+    real(rk), allocatable :: own(:), all(:)
     associate (list => nodes%row(this_rank() + 1))
       own = reshape(field(:, list), [size(field, 1)*size(list)])
     end associate
-    allocate (all(merge(size(field), 0, this_rank() == 0)))
+    allocate (all(merge(size(field), 0, is_first_rank())))
     call gather_on_first_rank(own, size(field, 1)*(nodes%first - 1), all)
-    if (this_rank() == 0) field(:, nodes%item) = reshape(all, shape(field))
-  end subroutine gather_field
+    if (is_first_rank()) field(:, nodes%item) = reshape(all, shape(field))
+  end subroutine gather_at_nodes
 
   !> The node with the largest vector of a field, and this vector, on all ranks.
   subroutine find_largest(field, node, vector)

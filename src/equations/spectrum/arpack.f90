@@ -83,6 +83,7 @@ contains
     type(pattern), intent(in) :: matrix
     integer, intent(in) :: num_basis
     type(workspace), intent(out) :: work
+    integer, allocatable :: number(:) ! of each own unknown, on all ranks together
     integer :: k
     work%is_divided = merge(1_c_int, 0_c_int, matrix%part%is_divided)
     work%own = pack([(k, k=1, matrix%num_free)], matrix%part%owns(matrix%num_free))
@@ -91,8 +92,11 @@ contains
       allocate (work%residual(n), work%basis(n, num_basis), work%vectors(3*n))
       allocate (work%small(num_basis*(num_basis + 8)))
       ! A fixed start makes runs reproducible; it has symmetric and antisymmetric parts.
-      work%residual(:) = [(1.0_rk + 0.5_rk*sin(1.7_rk*k) + 0.25_rk*cos(0.13_rk*k), k=1, n)]
-      if (size(work%own) == 0) work%residual(:) = 0.0_rk
+      work%residual(:) = 0.0_rk
+      number = [(k, k=1, size(work%own))]
+      if (matrix%part%is_divided) number = matrix%layout%row(work%own) + 1
+      work%residual(:size(number)) = 1.0_rk + 0.5_rk*sin(1.7_rk*number) &
+                                     + 0.25_rk*cos(0.13_rk*number)
     end associate
     work%parameters(1) = exact_shifts
     work%parameters(3) = most_restarts

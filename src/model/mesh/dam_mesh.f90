@@ -29,9 +29,9 @@ module dam_mesh
     integer, allocatable :: rank_of_element(:)
     logical, allocatable :: is_node_absent(:) !< (nodes) all elements of the node are absent
     integer, allocatable :: rank_of_law(:) !< (elements) rank that calls its law, where divided
-    !> (nodes) this rank has the unknowns of the node, all ranks have them; not allocated: all ranks
-    !> have those of all nodes
-    logical, allocatable :: is_node_here(:), is_node_common(:)
+    !> (nodes) this rank has the unknowns of the node; not allocated: all ranks have all unknowns
+    logical, allocatable :: is_node_here(:)
+    logical, allocatable :: is_node_common(:) !< (nodes) all ranks have the unknowns of the node
   end type fe_mesh
 
   !> A set of nodes or elements: positions in the mesh, ascending, each once.

@@ -39,7 +39,7 @@ module run_checkpoint
 
 contains
 
-  !> The label of a checkpoint.
+  !> The label of a checkpoint. With its constructor as an argument gfortran 12 spoils memory.
   function label_of(stem, number) result(label)
     character(*), intent(in) :: stem !< folder and name of the job
     integer, intent(in) :: number !< from 1
