@@ -1,9 +1,10 @@
 /* METIS behind plain numbers: order of elimination, parts of graphs and of meshes.
  *
- * METIS catches SIGTERM while it works, gives up and returns METIS_ERROR. Each call below is then
- * repeated once. If METIS now succeeds, a signal has stopped it, and the program gets the
- * signal afterwards. */
+ * METIS catches SIGTERM while it works and jumps out of what it does, also out of malloc, which
+ * spoils the memory of the program. Therefore the threads hold the signal back during each call; the
+ * program gets it afterwards. */
 #include <metis.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -14,6 +15,16 @@ _Static_assert(sizeof(idx_t) == sizeof(int), "METIS must be built with 32-bit in
  * METIS's own 200 separators are larger: dams are long, and have few places that are narrow
  * (docs/performance.md, "Order of elimination"). */
 enum { unbalance = 400 };
+
+/* Holds SIGTERM back in all threads (SIG_BLOCK), or lets it through (SIG_UNBLOCK). */
+static void mask_signal(int how)
+{
+  sigset_t held;
+  sigemptyset(&held);
+  sigaddset(&held, SIGTERM);
+#pragma omp parallel
+  pthread_sigmask(how, &held, NULL);
+}
 
 /* Order of elimination of a graph (0-based adjacency without loops); order[new] = old.
  * Returns 0 for success. */
@@ -26,11 +37,9 @@ int keyway_nested_dissection(int n, int *start, int *neighbour, int *weight, int
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_UFACTOR] = unbalance;
+  mask_signal(SIG_BLOCK);
   status = METIS_NodeND(&n, start, neighbour, weight, options, order, place);
-  if (status == METIS_ERROR) {
-    status = METIS_NodeND(&n, start, neighbour, weight, options, order, place);
-    if (status == METIS_OK) raise(SIGTERM);
-  }
+  mask_signal(SIG_UNBLOCK);
   free(place);
   return status == METIS_OK ? 0 : 1;
 }
@@ -45,13 +54,10 @@ int keyway_divide_graph(int num_nodes, int *start, int *neighbour, int *weight, 
   int status;
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
+  mask_signal(SIG_BLOCK);
   status = METIS_PartGraphRecursive(&num_nodes, &constraints, start, neighbour, NULL, NULL, weight,
                                     &num_parts, NULL, NULL, options, &cut, part);
-  if (status == METIS_ERROR) {
-    status = METIS_PartGraphRecursive(&num_nodes, &constraints, start, neighbour, NULL, NULL,
-                                      weight, &num_parts, NULL, NULL, options, &cut, part);
-    if (status == METIS_OK) raise(SIGTERM);
-  }
+  mask_signal(SIG_UNBLOCK);
   return status == METIS_OK ? 0 : 1;
 }
 
@@ -61,13 +67,11 @@ static int find_neighbours(int num_elements, int num_nodes, int *first, int *nod
 {
   enum { nodes_of_face = 4 };
   idx_t common = nodes_of_face, from_zero = 0;
-  int status = METIS_MeshToDual(&num_elements, &num_nodes, first, node, &common, &from_zero, start,
-                                neighbour);
-  if (status == METIS_ERROR) {
-    status = METIS_MeshToDual(&num_elements, &num_nodes, first, node, &common, &from_zero, start,
-                              neighbour);
-    if (status == METIS_OK) raise(SIGTERM);
-  }
+  int status;
+  mask_signal(SIG_BLOCK);
+  status = METIS_MeshToDual(&num_elements, &num_nodes, first, node, &common, &from_zero, start,
+                            neighbour);
+  mask_signal(SIG_UNBLOCK);
   return status == METIS_OK ? 0 : 1;
 }
 

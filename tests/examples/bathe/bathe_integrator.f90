@@ -223,10 +223,11 @@ contains
       task%velocity = new%v + self%c*moved
       task%velocity_of_x = self%c
       acceleration = new%a + self%c**2*moved
-      task%balance%reference_force = largest_force(before%motion, n, 1.0_rk, when%increment)
+      task%balance%reference_force = largest_force(before%motion, system%matrix, 1.0_rk, &
+                                                   when%increment)
       if (self%solids%has_inelastic()) then
         task%reference_force = max(task%balance%reference_force, before%largest_force, &
-                                   length(new%external(:n)))
+                                   length(system%matrix%part, new%external(:n)))
       end if
       call task%balance%set_jumps(system%operator, task%start, before%joints)
       allocate (task%x(system%matrix%num_total))
@@ -251,10 +252,11 @@ contains
       call sum_contact(system%operator, after)
       new%balanced = new%external - new%viscous - new%internal - new%contact
       after%largest_force = max(task%balance%reference_force, task%reference_force, &
-                                length(new%internal), &
-                                largest_force(new, n, 1.0_rk, dt))
+                                length(system%matrix%part, new%internal), &
+                                largest_force(new, system%matrix, 1.0_rk, dt))
       after%joint_condition = max(after%joint_condition, self%solids%solver%condition)
-      call task%check_balance(new%balanced(:n) - new%inertia(:n), after%largest_force, outcome)
+      call task%check_balance(system%matrix%part, new%balanced(:n) - new%inertia(:n), &
+                              after%largest_force, outcome)
     end associate
   end subroutine correct
 

@@ -1,5 +1,5 @@
-!> Nested dissection: METIS gives up where SIGTERM arrives. The order is found all the same, and the
-!> program gets the signal.
+!> Nested dissection where SIGTERM arrives: METIS does not see it, the order is found, and the
+!> program gets the signal afterwards.
 program test_group_dissection
   use, intrinsic :: iso_c_binding, only: c_int
   use group_dissection, only: dissect_graph, vertex_graph
