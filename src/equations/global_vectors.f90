@@ -10,7 +10,7 @@
 module global_vectors
   use kinds, only: rk
   use matrix_pattern, only: pattern, multiply_local => multiply, diagonal_local => diagonal
-  use ranks, only: add_over_ranks, num_ranks, this_rank
+  use ranks, only: of_all_ranks
   use unknown_parts, only: unknown_part
   implicit none
   private
@@ -79,15 +79,6 @@ contains
     end do
     dot = sum(of_all_ranks(dot))
   end function dot_of_parts
-
-  !> The numbers that the ranks have.
-  function of_all_ranks(own) result(all)
-    real(rk), intent(in) :: own
-    real(rk) :: all(num_ranks())
-    all = 0.0_rk
-    all(this_rank() + 1) = own
-    call add_over_ranks(all)
-  end function of_all_ranks
 
   !> sqrt(x . x).
   real(rk) function norm_of_vector(x) result(norm)

@@ -14,7 +14,7 @@ module solver_petsc
                              is_slow, memory_of_petsc, plan_petsc, rows_of_petsc_patch, &
                              shift_of_petsc, solve_petsc, solve_petsc_patch, start_petsc, &
                              sum_petsc, take_petsc_patch
-  use ranks, only: add_over_ranks, gather_rows, num_ranks, share_error, this_rank
+  use ranks, only: gather_rows, of_all_ranks, share_error, this_rank
   use unknown_layout, only: choose_solver, compressed_solver, direct_solver, num_rows, own_rows, &
                             row_layout
   use unknown_parts, only: unknown_part
@@ -151,25 +151,22 @@ contains
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:) !< of this rank
     real(rk), intent(out) :: list(:)
-    real(rk) :: largest(num_ranks())
+    real(rk) :: largest
     integer :: j, k, n
     n = 0
     largest = 0.0_rk
-    associate (own => largest(this_rank() + 1))
-      do j = 1, matrix%num_free
-        if (.not. matrix%layout%is_touched(j)) cycle
-        do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
-          own = max(own, values(k))
-          n = n + 1
-          list(n) = values(k)
-          if (.not. is_mirrored(matrix, k, j)) cycle
-          n = n + 1
-          list(n) = values(k)
-        end do
+    do j = 1, matrix%num_free
+      if (.not. matrix%layout%is_touched(j)) cycle
+      do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
+        largest = max(largest, values(k))
+        n = n + 1
+        list(n) = values(k)
+        if (.not. is_mirrored(matrix, k, j)) cycle
+        n = n + 1
+        list(n) = values(k)
       end do
-    end associate
-    call add_over_ranks(largest)
-    list(n + 1:) = max(maxval(largest), tiny(1.0_rk))
+    end do
+    list(n + 1:) = max(maxval(of_all_ranks(largest)), tiny(1.0_rk))
   end subroutine list_values
 
   !> Sums the matrix over the ranks, and factors it or prepares the iteration.
@@ -315,7 +312,7 @@ contains
     end if
     call share_error(error)
     if (allocated(error)) return
-    allocate (unknown_of_row(self%layout%first_row(size(self%layout%first_row))), source=0)
+    allocate (unknown_of_row(num_rows(self%layout)), source=0)
     do j = 1, size(self%layout%row)
       unknown_of_row(self%layout%row(j) + 1) = j
     end do

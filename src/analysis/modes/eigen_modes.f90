@@ -13,7 +13,7 @@ module eigen_modes
   use assemble_forces, only: inertia_force
   use linear_solver, only: equation_solver
   use arpack, only: lanczos
-  use ranks, only: num_ranks, this_rank
+  use ranks, only: num_ranks, starts_of_ranks, this_rank
   use unknown_parts, only: unknown_part
   implicit none
   private
@@ -181,15 +181,11 @@ contains
     real(rk), intent(in) :: mass(:)
     integer, intent(in) :: num_rows
     integer, allocatable, intent(out) :: unknown(:) !< (rows)
-    real(rk) :: counts(num_ranks())
     integer, allocatable :: own(:)
-    integer :: before
+    integer :: first(num_ranks() + 1), before
     own = list_massive(matrix, mass)
-    counts = 0.0_rk
-    counts(this_rank() + 1) = size(own)
-    call matrix%part%add_shares(counts)
-    before = nint(sum(counts(:this_rank())))
-    if (.not. matrix%part%is_divided) before = 0
+    first = starts_of_ranks(size(own))
+    before = merge(first(this_rank() + 1), 0, matrix%part%is_divided)
     allocate (unknown(num_rows), source=0)
     unknown(before + 1:before + size(own)) = own
   end subroutine place_massive

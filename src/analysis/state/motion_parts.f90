@@ -8,7 +8,7 @@ module motion_parts
   use kinds, only: rk
   use node_parts, only: find_owners
   use problem_definition, only: problem
-  use ranks, only: add_over_ranks, gather_on_first_rank, is_first_rank, num_ranks, this_rank
+  use ranks, only: gather_on_first_rank, is_first_rank, num_ranks, starts_of_ranks, this_rank
   implicit none
   private
   public :: gather_motion, take_own_motion
@@ -116,21 +116,13 @@ contains
     integer, intent(out) :: num_free !< of one process
     type(numbering) :: all
     type(error_type), allocatable :: ignored ! the step has been numbered before
-    integer :: k, p
     associate (mesh => model%mesh, fixities => model%steps(step)%fixities)
       call number_step(mesh, model%joints, model%guests, fixities, numbers, ignored)
       call number_step(mesh, model%joints, model%guests, fixities, all, ignored, &
                        of_all_ranks=.true.)
     end associate
     num_free = all%num_free
-    allocate (place(numbers%num_total), source=0)
-    do p = 1, size(numbers%first_jump)
-      if (numbers%first_jump(p) == 0) cycle
-      place(numbers%first_jump(p):numbers%first_jump(p) + 2) = [(all%first_jump(p) + k, k=0, 2)]
-    end do
-    do k = 1, numbers%num_total
-      if (place(k) == 0) place(k) = all%unknown_of(numbers%node(k), numbers%direction(k))
-    end do
+    place = numbers%places_in(all)
   end subroutine find_places
 
   !> Gives the first rank the places of the own unknowns of all ranks.
@@ -140,14 +132,10 @@ contains
     type(numbering), intent(in) :: numbers
     integer, intent(in) :: place(:) !< (num_total)
     integer :: owner(model%mesh%num_nodes), k
-    real(rk) :: counts(num_ranks())
     real(rk), allocatable :: all(:)
     call find_owners(model%mesh, owner)
     self%own = pack([(k, k=1, numbers%num_total)], owner(numbers%node) == this_rank())
-    counts = 0.0_rk
-    counts(this_rank() + 1) = size(self%own)
-    call add_over_ranks(counts)
-    self%first = [0, (nint(sum(counts(:k))), k=1, num_ranks())]
+    self%first = starts_of_ranks(size(self%own))
     allocate (all(merge(self%first(num_ranks() + 1), 0, is_first_rank())))
     call gather_on_first_rank(real(place(self%own), rk), self%first, all)
     self%place = nint(all)

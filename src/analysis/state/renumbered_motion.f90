@@ -62,17 +62,9 @@ contains
   subroutine match(old, new, place)
     type(numbering), intent(in) :: old, new
     integer, allocatable, intent(out) :: place(:) !< (num_total)
-    integer :: k, p
     logical :: is_same
     if (old%num_total /= new%num_total .or. size(old%unknown) /= size(new%unknown)) return
-    allocate (place(new%num_total), source=0)
-    do p = 1, size(new%first_jump)
-      if (min(new%first_jump(p), old%first_jump(p)) == 0) cycle
-      place(new%first_jump(p):new%first_jump(p) + 2) = [(old%first_jump(p) + k, k=0, 2)]
-    end do
-    do k = 1, new%num_total
-      if (place(k) == 0) place(k) = old%unknown_of(new%node(k), new%direction(k))
-    end do
+    place = new%places_in(old)
     is_same = all(place > 0) .and. all(old%row_start == new%row_start)
     if (is_same) is_same = all(place(new%unknown) == old%unknown) &
                            .and. all(abs(new%coefficient - old%coefficient) <= same_coefficient)

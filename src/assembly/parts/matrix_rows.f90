@@ -13,7 +13,7 @@ module matrix_rows
   use node_sequence, only: order_nodes
   use node_parts, only: find_owners
   use part_borders, only: find_part
-  use ranks, only: add_over_ranks, num_ranks, this_rank
+  use ranks, only: num_ranks, starts_of_ranks, this_rank
   use row_tables, only: row_table
   use unknown_layout, only: own_rows
   use unknown_parts, only: unknown_part
@@ -81,21 +81,6 @@ contains
       next = next + num_axes
     end do
   end subroutine number_rows
-
-  !> The first row of each rank, and the number of all rows, from the rows of this rank.
-  function starts_of_ranks(num_own) result(first)
-    integer, intent(in) :: num_own
-    integer :: first(num_ranks() + 1)
-    real(rk) :: num_rows(num_ranks())
-    integer :: k
-    num_rows = 0.0_rk
-    num_rows(this_rank() + 1) = num_own
-    call add_over_ranks(num_rows)
-    first(1) = 0
-    do k = 1, num_ranks()
-      first(k + 1) = first(k) + nint(num_rows(k))
-    end do
-  end function starts_of_ranks
 
   !> Takes the rows of unknowns that other ranks own.
   subroutine share_rows(num_total, part, row)

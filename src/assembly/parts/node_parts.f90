@@ -1,7 +1,7 @@
 !> Divides the nodes among the ranks: a rank has the unknowns of the nodes of its elements. Nodes of
 !> joints, ties, springs, added mass and other effects that couple nodes are on all ranks.
 module node_parts
-  use dam_mesh, only: fe_mesh, node_tie
+  use dam_mesh, only: fe_mesh, node_tie, nodes_of_elements
   use guest_history, only: history
   use guest_list, only: ties_of
   use joint_points, only: dam_joint
@@ -10,7 +10,6 @@ module node_parts
   use ranks, only: add_over_ranks, gather_on_first_rank, is_first_rank, num_ranks, &
                    number_of_first_rank, this_rank
   use row_tables, only: group_by_key, row_table
-  use step_plan, only: step
   implicit none
   private
   public :: divide_nodes, find_owners, find_largest, vector_at
@@ -22,7 +21,7 @@ contains
   subroutine divide_nodes(model)
     type(problem), intent(inout) :: model !< with a rank for each element
     logical, allocatable :: is_common(:)
-    integer :: e, a, i
+    integer :: i
     if (num_ranks() == 1) return
     if (needs_whole_vectors(model)) return
     call mark_common(model, is_common)
@@ -33,13 +32,9 @@ contains
           mesh%rank_of_law(model%inelastic(i)%elements) = model%inelastic(i)%rank
         end do
       end if
-      mesh%is_node_here = is_common
-      do e = 1, mesh%num_elements
-        if (all([mesh%rank_of_element(e), mesh%rank_of_law(e)] /= this_rank())) cycle
-        do a = 1, size(mesh%nodes, 1)
-          if (mesh%nodes(a, e) > 0) mesh%is_node_here(mesh%nodes(a, e)) = .true.
-        end do
-      end do
+      mesh%is_node_here = is_common .or. &
+                          nodes_of_elements(mesh, mesh%rank_of_element == this_rank() &
+                                            .or. mesh%rank_of_law == this_rank())
       call move_alloc(is_common, mesh%is_node_common)
     end associate
   end subroutine divide_nodes
@@ -89,10 +84,7 @@ contains
     end do
     call cells%finish()
     is_common(cells%item) = .true.
-    do i = 1, model%mesh%num_elements
-      if (model%mesh%material_of_element(i) > 0) cycle
-      is_common(pack(model%mesh%nodes(:, i), model%mesh%nodes(:, i) > 0)) = .true.
-    end do
+    is_common = is_common .or. nodes_of_elements(model%mesh, model%mesh%material_of_element <= 0)
   end subroutine mark_common
 
   !> Marks the nodes of a joint, in all stages.

@@ -1,7 +1,7 @@
 !> How evenly the work of a run is divided: the ledgers of all ranks together.
 module rank_balance
   use kinds, only: rk
-  use ranks, only: add_over_ranks, exchange_seconds, num_ranks, this_rank, text_of_rank
+  use ranks, only: exchange_seconds, num_ranks, of_all_ranks, text_of_rank, this_rank
   use run_ledger, only: ledger, ledger_part
   use timer, only: peak_memory
   use write_text, only: as_text, as_short_text
@@ -79,9 +79,7 @@ contains
     real(rk), intent(in) :: own
     type(spread) :: over
     real(rk), allocatable :: all(:)
-    allocate (all(num_ranks()), source=0.0_rk)
-    all(this_rank() + 1) = own
-    call add_over_ranks(all)
+    all = of_all_ranks(own)
     over%name = name
     over%least = minval(all)
     over%mean = sum(all)/size(all)

@@ -12,7 +12,7 @@ module ranks
   public :: start_ranks, end_ranks, num_ranks, this_rank, is_first_rank, is_alone
   public :: exchange_seconds, num_ranks_here, add_over_ranks, gather_rows, is_true_everywhere
   public :: largest_of_ranks, number_of_first_rank, text_of_rank, share_error
-  public :: gather_on_first_rank, exchange
+  public :: gather_on_first_rank, exchange, of_all_ranks, starts_of_ranks
 
   !> For ranks that do not come, because they wait for this one elsewhere [s]. Rank 0 may write
   !> results meanwhile.
@@ -166,6 +166,27 @@ contains
     real(rk), contiguous, intent(inout) :: x(:, :) !< of one size on all ranks
     call keyway_add_over_ranks(x, size(x, kind=c_size_t))
   end subroutine add_matrices
+
+  !> The numbers that the ranks have, on all ranks.
+  function of_all_ranks(own) result(all)
+    real(rk), intent(in) :: own
+    real(rk) :: all(num_ranks())
+    all = 0.0_rk
+    all(this_rank() + 1) = own
+    call add_over_ranks(all)
+  end function of_all_ranks
+
+  !> Where the items of each rank start if they follow each other, from 0, and how many all have.
+  function starts_of_ranks(num_own) result(first)
+    integer, intent(in) :: num_own !< items of this rank
+    integer :: first(num_ranks() + 1)
+    integer :: counts(num_ranks()), k
+    counts = nint(of_all_ranks(real(num_own, rk)))
+    first(1) = 0
+    do k = 1, size(counts)
+      first(k + 1) = first(k) + counts(k)
+    end do
+  end function starts_of_ranks
 
   !> Puts the rows of all ranks together, on all ranks.
   subroutine gather_rows(first, own, all)

@@ -43,7 +43,7 @@ module dof_numbering
     integer, allocatable :: first_jump(:) !< (points) first unknown of a point's jump, 0 for none
   contains
     procedure :: expand, add_expanded, expand_prescribed, restrict
-    procedure :: reduce, add_reduced, unknown_of, describe
+    procedure :: reduce, add_reduced, unknown_of, places_in, describe
   end type numbering
 
 contains
@@ -341,6 +341,22 @@ contains
     if (self%node(self%unknown(first)) == node .and. .not. is_jump(self, self%unknown(first)) &
         .and. self%direction(self%unknown(first)) == component) unknown = self%unknown(first)
   end function unknown_of
+
+  !> The unknown of another numbering of the same model for each own one, 0 for none.
+  pure function places_in(self, other) result(place)
+    class(numbering), intent(in) :: self
+    type(numbering), intent(in) :: other
+    integer :: place(self%num_total)
+    integer :: k, p
+    place = 0
+    do p = 1, size(self%first_jump)
+      if (min(self%first_jump(p), other%first_jump(p)) == 0) cycle
+      place(self%first_jump(p):self%first_jump(p) + 2) = [(other%first_jump(p) + k, k=0, 2)]
+    end do
+    do k = 1, self%num_total
+      if (place(k) == 0) place(k) = other%unknown_of(self%node(k), self%direction(k))
+    end do
+  end function places_in
 
   pure logical function is_jump(numbers, unknown)
     type(numbering), intent(in) :: numbers
