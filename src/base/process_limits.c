@@ -208,11 +208,13 @@ static void limit_memory(void)
 }
 
 /* Vectors of a large model come and go in each increment. The library would give their pages back to
- * the system each time, and the system would clear them anew. */
+ * the system each time, and the system would clear them anew. Larger blocks, such as factors, go
+ * back: SuperLU, a library that PETSc loads, turns that off before the program starts. */
 static void keep_pages(void)
 {
 #ifdef __GLIBC__
-  enum { largest_kept = 32 << 20, most_kept = 64 << 20 };
+  enum { largest_kept = 32 << 20, most_kept = 64 << 20, most_blocks = 65536 };
+  mallopt(M_MMAP_MAX, most_blocks);
   mallopt(M_MMAP_THRESHOLD, largest_kept);
   mallopt(M_TRIM_THRESHOLD, most_kept);
 #endif

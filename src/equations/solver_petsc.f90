@@ -5,6 +5,7 @@
 module solver_petsc
   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr, c_size_t
   use kinds, only: long, rk
+  use entry_lists, only: list_block_values, list_blocks, list_entries, list_entry_values
   use errors, only: error_type, raise, system_failed
   use blas_threads, only: use_many_threads, use_one_thread
   use linear_solver, only: equation_solver
@@ -33,7 +34,7 @@ module solver_petsc
     logical, private :: is_ready = .false. !< there is a factor
     logical, private :: has_failed = .false. !< PETSc has, on this rank or on all
     integer(c_int), private :: method = by_cholesky
-    integer(c_size_t), private :: num_entries_given = 0
+    integer(c_size_t), private :: num_given = 0 !< entries (by_lu) or blocks that this rank adds
     type(row_layout), private :: layout !< its rows alone
     type(unknown_part), private :: part !< unknowns of this rank, where vectors are divided
   contains
@@ -60,13 +61,17 @@ contains
     bounds = own_rows(self%layout, this_rank())
     self%method = by_lu
     if (matrix%is_symmetric) self%method = method_of(matrix%layout)
-    call list_places(matrix, bounds, row, column)
-    self%num_entries_given = size(row, kind=c_size_t)
+    if (self%method == by_lu) then
+      call list_entries(matrix, row, column)
+    else
+      call list_blocks(matrix, row, column)
+    end if
+    self%num_given = size(row, kind=c_size_t)
     self%handle = start_petsc()
     if (.not. c_associated(self%handle)) then
       call raise(error, 'PETSc could not be started', system_failed)
     else if (plan_petsc(self%handle, self%method, int(bounds(2) - bounds(1) + 1, c_int), &
-                        matrix%layout%rigid, self%num_entries_given, row, column) /= is_done) then
+                        matrix%layout%rigid, self%num_given, row, column) /= is_done) then
       call raise(error, 'PETSc could not plan the equations (not enough memory?)', system_failed)
       self%has_failed = .true.
     end if
@@ -99,91 +104,17 @@ contains
     text = as_text(num_rows(layout))//' equations, '//text
   end function method_text
 
-  !> Rows and columns of the entries that this rank adds in the order of `list_values`, of a
-  !> symmetric matrix in both triangles; then the own rows without an unknown.
-  subroutine list_places(matrix, bounds, row, column)
-    type(pattern), intent(in) :: matrix
-    integer, intent(in) :: bounds(2) !< own rows
-    integer(c_int), allocatable, intent(out) :: row(:), column(:)
-    logical :: is_empty(bounds(1):bounds(2))
-    integer :: j, k, n, i, pass
-    associate (place => matrix%layout%row)
-      is_empty = .true.
-      do j = 1, matrix%num_free
-        if (place(j) >= bounds(1) .and. place(j) <= bounds(2)) is_empty(place(j)) = .false.
-      end do
-      do pass = 1, 2
-        n = 0
-        do j = 1, matrix%num_free
-          if (.not. matrix%layout%is_touched(j)) cycle
-          do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
-            call add_place(place(matrix%row(k)), place(j))
-            if (is_mirrored(matrix, k, j)) call add_place(place(j), place(matrix%row(k)))
-          end do
-        end do
-        do i = bounds(1), bounds(2)
-          if (is_empty(i)) call add_place(i, i)
-        end do
-        if (pass == 1) allocate (row(n), column(n))
-      end do
-    end associate
-  contains
-    !> Counts a place, and in the second pass writes it.
-    subroutine add_place(row_of_place, column_of_place)
-      integer, intent(in) :: row_of_place, column_of_place
-      n = n + 1
-      if (pass == 1) return
-      row(n) = int(row_of_place, c_int)
-      column(n) = int(column_of_place, c_int)
-    end subroutine add_place
-  end subroutine list_places
-
-  !> Whether an entry stands for that of the upper triangle, too.
-  pure logical function is_mirrored(matrix, entry, column)
-    type(pattern), intent(in) :: matrix
-    integer, intent(in) :: entry, column
-    is_mirrored = matrix%is_symmetric .and. matrix%row(entry) /= column
-  end function is_mirrored
-
-  !> The values of the entries of `list_places`. A row without an unknown gets the largest value of
-  !> all ranks.
-  subroutine list_values(matrix, values, list)
-    type(pattern), intent(in) :: matrix
-    real(rk), intent(in) :: values(:) !< of this rank
-    real(rk), intent(out) :: list(:)
-    real(rk) :: largest
-    integer :: j, k, n
-    n = 0
-    largest = 0.0_rk
-    do j = 1, matrix%num_free
-      if (.not. matrix%layout%is_touched(j)) cycle
-      do k = matrix%column_start(j), matrix%column_start(j) + matrix%free_entries(j) - 1
-        largest = max(largest, values(k))
-        n = n + 1
-        list(n) = values(k)
-        if (.not. is_mirrored(matrix, k, j)) cycle
-        n = n + 1
-        list(n) = values(k)
-      end do
-    end do
-    list(n + 1:) = max(maxval(of_all_ranks(largest)), tiny(1.0_rk))
-  end subroutine list_values
-
   !> Sums the matrix over the ranks, and factors it or prepares the iteration.
   subroutine factorise(self, matrix, values, error)
     class(petsc_solver), intent(inout) :: self
     type(pattern), intent(in) :: matrix
     real(rk), intent(in) :: values(:)
     type(error_type), allocatable, intent(out) :: error
-    real(rk), allocatable :: list(:)
     integer(c_int) :: status
     integer :: levels
     self%failed_unknown = 0
     if (num_rows(matrix%layout) == 0) return
-    allocate (list(self%num_entries_given))
-    call list_values(matrix, values, list)
-    status = sum_petsc(self%handle, list)
-    deallocate (list)
+    status = sum_values(self, matrix, values)
     call use_many_threads(levels)
     if (status == is_done) status = factor_petsc(self%handle)
     call use_one_thread(levels)
@@ -197,6 +128,23 @@ contains
     end if
     self%is_ready = status == is_done
   end subroutine factorise
+
+  !> Gives PETSc the values of this rank.
+  integer(c_int) function sum_values(self, matrix, values) result(status)
+    type(petsc_solver), intent(in) :: self
+    type(pattern), intent(in) :: matrix
+    real(rk), intent(in) :: values(:)
+    real(rk), allocatable :: entries(:), blocks(:, :, :)
+    if (self%method == by_lu) then
+      allocate (entries(self%num_given))
+      call list_entry_values(matrix, values, entries)
+      status = sum_petsc(self%handle, entries)
+    else
+      allocate (blocks(3, 3, self%num_given))
+      call list_block_values(matrix, values, blocks)
+      status = sum_petsc(self%handle, blocks)
+    end if
+  end function sum_values
 
   !> Solves for each column of `b`, in place.
   subroutine solve(self, b, error)

@@ -3,12 +3,15 @@ set(sources
   cholmod_bridge.c
   column_products.f90
   distributed/petsc_equations.f90
+  distributed/unknown_layout.f90
+  distributed/unknown_parts.f90
   elimination/cholmod_calls.f90
   elimination/cholmod_status.f90
   elimination/factor_top.f90
   elimination/group_dissection.f90
   elimination/metis_bridge.c
   elimination/wider_pattern.f90
+  entry_lists.f90
   global_vectors.f90
   linear_solver.f90
   low_rank/solver_low_rank.f90
@@ -30,16 +33,14 @@ set(sources
   supernodes/single_factor.c
   supernodes/subtrees.c
   supernodes/supernodal_solve.c
-  unknown_layout.f90
-  unknown_parts.f90
 )
 # What stands behind petsc_equations.f90 and arpack.f90
 if(KEYWAY_PETSC)
-  list(APPEND sources distributed/iteration/block_matrix.c distributed/iteration/coarse_space.c
-       distributed/iteration/incomplete_factor.c distributed/iteration/last_solutions.c
-       distributed/iteration/node_groups.c distributed/iteration/two_levels.c
-       distributed/matrix_patch.c distributed/mumps_factor.c distributed/petsc_bridge.c
-       spectrum/parallel_arpack.c)
+  list(APPEND sources distributed/block_list.c distributed/block_matrix.c
+       distributed/iteration/coarse_space.c distributed/iteration/incomplete_factor.c
+       distributed/iteration/last_solutions.c distributed/iteration/node_groups.c
+       distributed/iteration/two_levels.c distributed/matrix_patch.c distributed/mumps_factor.c
+       distributed/petsc_bridge.c distributed/petsc_start.c spectrum/parallel_arpack.c)
 else()
   list(APPEND sources distributed/without_petsc.c spectrum/serial_arpack.c)
 endif()

@@ -1,13 +1,13 @@
 /* Behind petsc_equations.f90 with KEYWAY_PETSC: a matrix by rows, a solver, two vectors. */
 #include <petscksp.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-#include "iteration/block_matrix.h"
+#include "block_matrix.h"
 #include "iteration/last_solutions.h"
 #include "iteration/two_levels.h"
 #include "matrix_patch.h"
 #include "mumps_factor.h"
+#include "petsc_start.h"
 
 _Static_assert(sizeof(PetscInt) == sizeof(int), "PETSc must be built with 32-bit indices");
 _Static_assert(sizeof(PetscScalar) == sizeof(double), "PETSc must be built with real scalars");
@@ -30,8 +30,9 @@ static const double any_growth = 1e50;
 struct equations {
   int method;
   int rows;
-  Mat matrix;
-  Mat blocks; /* the same in blocks of 3 x 3, upper triangle; by_iteration */
+  Mat matrix; /* by rows with by_lu, else the upper triangle in blocks of 3 x 3 */
+  Mat both;   /* both triangles by rows, for patches; NULL for none */
+  struct block_list list; /* of what this rank adds to blocks */
   struct two_levels levels; /* by_iteration */
   KSP solver;
   Vec b, x;
@@ -40,38 +41,11 @@ struct equations {
   struct matrix_patch patch;
 };
 
-static PetscErrorCode keep_quiet(MPI_Comm comm, int line, const char *function, const char *file,
-                                 PetscErrorCode code, PetscErrorType type, const char *text,
-                                 void *context)
-{
-  (void)comm, (void)line, (void)function, (void)file, (void)type, (void)text, (void)context;
-  return code;
-}
-
 int keyway_has_petsc(void) { return 1; }
-
-/* An option that the user has not set in PETSC_OPTIONS. */
-static PetscErrorCode set_default(const char *name, const char *value)
-{
-  PetscBool is_set;
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &is_set));
-  if (!is_set) PetscCall(PetscOptionsSetValue(NULL, name, value));
-  PetscFunctionReturn(0);
-}
 
 void *keyway_petsc_start(void)
 {
-  PetscBool is_started;
-  if (PetscInitialized(&is_started)) return NULL;
-  if (!is_started) {
-    /* Signals are the program's; PETSc's help on errors is not for users of the program. */
-    if (PetscOptionsSetValue(NULL, "-no_signal_handler", "true")) return NULL;
-    if (PetscInitializeNoArguments()) return NULL;
-    if (PetscPushErrorHandler(keep_quiet, NULL)) return NULL;
-    if (set_default("-keyway_sub_pc_type", "icc")) return NULL;
-  }
-  return calloc(1, sizeof(struct equations));
+  return start_petsc() ? NULL : calloc(1, sizeof(struct equations));
 }
 
 void keyway_petsc_finish(void *handle)
@@ -80,7 +54,8 @@ void keyway_petsc_finish(void *handle)
   if (!self) return;
   KSPDestroy(&self->solver);
   MatDestroy(&self->matrix);
-  MatDestroy(&self->blocks);
+  MatDestroy(&self->both);
+  forget_list(&self->list);
   forget_two_levels(&self->levels);
   forget_solutions(&self->last);
   forget_patch(&self->patch);
@@ -118,8 +93,7 @@ static PetscErrorCode choose_method(struct equations *self)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode plan(struct equations *self, const double *rigid, size_t entries, int *row,
-                           int *column)
+static PetscErrorCode plan_rows(struct equations *self, size_t entries, int *row, int *column)
 {
   PetscFunctionBegin;
   PetscCall(MatCreate(PETSC_COMM_WORLD, &self->matrix));
@@ -127,7 +101,19 @@ static PetscErrorCode plan(struct equations *self, const double *rigid, size_t e
   PetscCall(MatSetType(self->matrix, MATAIJ));
   PetscCall(MatSetBlockSize(self->matrix, rows_of_node));
   PetscCall(MatSetPreallocationCOO(self->matrix, (PetscCount)entries, row, column));
-  if (self->method != by_lu) PetscCall(MatSetOption(self->matrix, MAT_SPD, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode plan(struct equations *self, const double *rigid, size_t entries, int *row,
+                           int *column)
+{
+  PetscFunctionBegin;
+  if (self->method == by_lu) {
+    PetscCall(plan_rows(self, entries, row, column));
+  } else {
+    PetscCall(make_list(self->rows, entries, row, column, &self->list));
+    PetscCall(plan_blocks(self->rows, &self->list, &self->matrix));
+  }
   PetscCall(MatCreateVecs(self->matrix, &self->x, &self->b));
   PetscCall(VecDuplicate(self->b, &self->rest));
   PetscCall(VecDuplicate(self->x, &self->correction));
@@ -210,31 +196,32 @@ static PetscErrorCode set_up_factor(struct equations *self, int *status)
   PetscFunctionReturn(0);
 }
 
-/* Products with a matrix in blocks read half as many indices. */
-static PetscErrorCode set_up_blocks(struct equations *self, int *status)
+static PetscErrorCode sum(struct equations *self, const double *values)
 {
-  int is_definite;
   PetscFunctionBegin;
-  PetscCall(copy_to_blocks(self->matrix, &self->blocks));
-  PetscCall(set_up_two_levels(&self->levels, self->solver, self->matrix, self->blocks,
-                              &is_definite));
-  *status = is_definite ? done : singular;
+  PetscCall(forget_solutions(&self->last));
+  PetscCall(MatDestroy(&self->both));
+  if (self->method == by_lu) PetscCall(MatSetValuesCOO(self->matrix, values, INSERT_VALUES));
+  else PetscCall(sum_blocks(&self->list, values, self->matrix));
   PetscFunctionReturn(0);
 }
 
 /* The caller frees the values before the factor takes memory. */
 int keyway_petsc_sum(void *handle, const double *values)
 {
-  struct equations *self = handle;
-  if (forget_solutions(&self->last)) return failed;
-  return MatSetValuesCOO(self->matrix, values, INSERT_VALUES) ? failed : done;
+  return sum(handle, values) ? failed : done;
 }
 
 static PetscErrorCode factor(struct equations *self, int *status)
 {
+  int is_definite;
   PetscFunctionBegin;
-  if (has_factor(self)) PetscCall(set_up_factor(self, status));
-  else PetscCall(set_up_blocks(self, status));
+  if (has_factor(self)) {
+    PetscCall(set_up_factor(self, status));
+  } else {
+    PetscCall(set_up_two_levels(&self->levels, self->solver, self->matrix, &is_definite));
+    *status = is_definite ? done : singular;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -248,11 +235,9 @@ int keyway_petsc_factor(void *handle)
  * of the forces A x: in a correction, all of its digits count. */
 static PetscErrorCode predict(struct equations *self, PetscScalar *with)
 {
-  Mat matrix;
   PetscFunctionBegin;
   PetscCall(combine_solutions(&self->last, self->b, with, self->x));
-  PetscCall(KSPGetOperators(self->solver, &matrix, NULL));
-  PetscCall(MatResidual(matrix, self->b, self->x, self->rest));
+  PetscCall(MatResidual(self->matrix, self->b, self->x, self->rest));
   PetscCall(VecSet(self->correction, 0));
   if (!has_factor(self))
     PetscCall(add_coarse_solution(&self->levels.coarse, self->rest, self->correction));
@@ -282,7 +267,7 @@ static PetscErrorCode iterate(struct equations *self, double admissible, PetscSc
     is_repeated = !has_factor(self) && *reason == KSP_DIVERGED_INDEFINITE_PC
                   && raise_shift(&self->levels.fine);
     if (is_repeated)
-      PetscCall(set_up_incomplete(&self->levels.fine, self->blocks, &is_repeated));
+      PetscCall(set_up_incomplete(&self->levels.fine, self->matrix, &is_repeated));
   } while (is_repeated);
   PetscCall(VecAXPY(self->x, 1, self->correction));
   PetscFunctionReturn(0);
@@ -366,7 +351,8 @@ int keyway_petsc_patch(void *handle, int layers, int most, int count, const int 
   struct equations *self = handle;
   enum patch_outcome outcome;
   *rows = 0;
-  if (take_patch(self->matrix, layers, most, count, seed, &self->patch, &outcome)) return failed;
+  if (!self->both && copy_to_rows(self->matrix, &self->both)) return failed;
+  if (take_patch(self->both, layers, most, count, seed, &self->patch, &outcome)) return failed;
   if (outcome != patch_too_large && count_patch_rows(&self->patch, rows)) return failed;
   return outcome == patch_has_no_factor ? singular : done;
 }
@@ -374,7 +360,9 @@ int keyway_petsc_patch(void *handle, int layers, int most, int count, const int 
 void keyway_petsc_drop_patch(void *handle)
 {
   struct equations *self = handle;
-  if (self) forget_patch(&self->patch);
+  if (!self) return;
+  forget_patch(&self->patch);
+  MatDestroy(&self->both);
 }
 
 int keyway_petsc_patch_rows(void *handle, int rows, int *row)

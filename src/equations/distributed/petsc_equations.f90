@@ -34,7 +34,8 @@ module petsc_equations
       type(c_ptr) :: handle
     end function start_petsc
 
-    !> Plans a matrix from the places of the entries that this rank adds.
+    !> Plans a matrix from the places of what this rank adds: entries (by_lu), else blocks of 3 x 3
+    !> in the upper triangle.
     function plan_petsc(handle, method, rows, rigid, entries, row, column) result(status) &
       bind(c, name='keyway_petsc_plan')
       import :: c_double, c_int, c_ptr, c_size_t
@@ -43,17 +44,19 @@ module petsc_equations
       integer(c_int), value :: method, rows !< own rows
       real(c_double), intent(in) :: rigid(rows, 6)
       integer(c_size_t), value :: entries
-      integer(c_int), intent(inout) :: row(entries), column(entries) !< from 0; overwritten
+      !> From 0; by_lu overwrites them
+      integer(c_int), intent(inout) :: row(entries), column(entries)
       integer(c_int) :: status
     end function plan_petsc
 
-    !> Sums the entries of all ranks.
+    !> Sums what all ranks add.
     function sum_petsc(handle, values) result(status) bind(c, name='keyway_petsc_sum')
       import :: c_double, c_int, c_ptr
       implicit none
       type(c_ptr), value :: handle
+      !> In the order of the plan; a block has nine, row by row
       ! allow(assumed-size)
-      real(c_double), intent(in) :: values(*) !< in the order of the planned entries
+      real(c_double), intent(in) :: values(*)
       integer(c_int) :: status
     end function sum_petsc
 

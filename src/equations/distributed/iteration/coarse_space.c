@@ -3,6 +3,7 @@
  * 2012, 321-333. */
 #include "coarse_space.h"
 
+#include "../block_matrix.h"
 #include "node_groups.h"
 
 enum { width = 3 };
@@ -13,6 +14,10 @@ enum { nodes_of_group = 128 };
 
 /* Most groups of all ranks: each rank solves for the motions of all groups. */
 enum { most_groups = 4000 };
+
+/* Entries of A W over those of A and W: some 17 over 84 in a row. PETSc takes more memory where they
+ * are more. */
+static const double fill = 0.3;
 
 /* A motion of a group that others give but for this part: nodes on a line, or a single node. */
 static const double dependent = 1e-8;
@@ -181,16 +186,28 @@ static PetscErrorCode factor_coarse(struct coarse_space *self, Mat coarse, int *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode set_up_coarse(struct coarse_space *self, Mat rows, int *is_definite)
+/* A W and W^T A W. PETSc multiplies no blocks with W, and keeps the factors of a product. */
+static PetscErrorCode multiply_motions(struct coarse_space *self, Mat blocks, Mat *coarse)
+{
+  Mat rows;
+  PetscFunctionBegin;
+  PetscCall(copy_to_rows(blocks, &rows));
+  if (!self->motions) PetscCall(make_motions(self, rows));
+  PetscCall(MatMatMult(rows, self->motions, MAT_INITIAL_MATRIX, fill, &self->forces));
+  PetscCall(MatProductClear(self->forces));
+  PetscCall(MatDestroy(&rows));
+  PetscCall(MatTransposeMatMult(self->motions, self->forces, MAT_INITIAL_MATRIX, PETSC_DEFAULT,
+                                coarse));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode set_up_coarse(struct coarse_space *self, Mat blocks, int *is_definite)
 {
   Mat coarse;
   PetscFunctionBegin;
-  if (!self->motions) PetscCall(make_motions(self, rows));
   PetscCall(KSPDestroy(&self->solver));
   PetscCall(MatDestroy(&self->forces));
-  PetscCall(MatMatMult(rows, self->motions, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &self->forces));
-  PetscCall(MatTransposeMatMult(self->motions, self->forces, MAT_INITIAL_MATRIX, PETSC_DEFAULT,
-                                &coarse));
+  PetscCall(multiply_motions(self, blocks, &coarse));
   PetscCall(MatSetOption(coarse, MAT_SPD, PETSC_TRUE));
   PetscCall(fill_empty_rows(coarse));
   PetscCall(factor_coarse(self, coarse, is_definite));

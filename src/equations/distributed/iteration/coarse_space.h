@@ -16,8 +16,9 @@ struct coarse_space {
 /* Keeps the motions of a rigid body at the own rows. */
 PetscErrorCode keep_rigid_motions(struct coarse_space *self, int rows, const double *rigid);
 
-/* A new matrix; the first one gives the groups. It is singular where W^T A W has no factor. */
-PetscErrorCode set_up_coarse(struct coarse_space *self, Mat rows, int *is_definite);
+/* A new matrix in blocks; the first one gives the groups. It is singular where W^T A W has no
+ * factor. */
+PetscErrorCode set_up_coarse(struct coarse_space *self, Mat blocks, int *is_definite);
 
 /* x += Q r, Q = W (W^T A W)^-1 W^T. */
 PetscErrorCode add_coarse_solution(struct coarse_space *self, Vec r, Vec x);

@@ -27,25 +27,9 @@ int raise_shift(struct incomplete_factor *self)
   return 0;
 }
 
-static PetscErrorCode give_operators(struct incomplete_factor *self, Mat blocks)
-{
-  Vec diagonal;
-  PetscFunctionBegin;
-  if (!self->shifted) PetscCall(MatDuplicate(blocks, MAT_COPY_VALUES, &self->shifted));
-  else PetscCall(MatCopy(blocks, self->shifted, SAME_NONZERO_PATTERN));
-  PetscCall(MatSetOption(self->shifted, MAT_SPD, PETSC_TRUE));
-  PetscCall(MatCreateVecs(blocks, &diagonal, NULL));
-  PetscCall(MatGetDiagonal(blocks, diagonal));
-  PetscCall(VecScale(diagonal, 1 + self->shift));
-  PetscCall(MatDiagonalSet(self->shifted, diagonal, INSERT_VALUES));
-  PetscCall(VecDestroy(&diagonal));
-  PetscCall(KSPSetOperators(self->solver, blocks, self->shifted));
-  PetscFunctionReturn(0);
-}
-
-/* PETSc has no incomplete factor without rows: of a rank whose part of the structure is not there
- * in a stage, or that has no elements. */
-static PetscErrorCode leave_out_empty(PC pc, Mat blocks)
+/* Makes each rank factor its rows anew. PETSc has no incomplete factor without rows: of a rank whose
+ * part of the structure is not there in a stage, or that has no elements. */
+static PetscErrorCode open_parts(PC pc, Mat blocks)
 {
   PC factor;
   KSP *own;
@@ -57,9 +41,10 @@ static PetscErrorCode leave_out_empty(PC pc, Mat blocks)
   PetscCall(PCSetUp(pc));
   PetscCall(MatGetLocalSize(blocks, &rows, NULL));
   PetscCall(PCBJacobiGetSubKSP(pc, &num_own, NULL, &own));
-  for (int k = 0; rows == 0 && k < num_own; k++) {
+  for (int k = 0; k < num_own; k++) {
+    PetscCall(KSPSetReusePreconditioner(own[k], PETSC_FALSE));
     PetscCall(KSPGetPC(own[k], &factor));
-    PetscCall(PCSetType(factor, PCNONE));
+    if (rows == 0) PetscCall(PCSetType(factor, PCNONE));
   }
   PetscFunctionReturn(0);
 }
@@ -101,18 +86,41 @@ static PetscErrorCode make_solver(struct incomplete_factor *self, Mat blocks)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode set_up_incomplete(struct incomplete_factor *self, Mat blocks, int *is_definite)
+/* Factors the matrix with the shift on its diagonal. PETSc would factor again when the diagonal is
+ * back. */
+static PetscErrorCode factor_shifted(struct incomplete_factor *self, Mat blocks)
 {
   PC pc;
+  Vec diagonal, shifted;
+  PetscFunctionBegin;
+  PetscCall(MatCreateVecs(blocks, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(blocks, diagonal));
+  PetscCall(VecDuplicate(diagonal, &shifted));
+  PetscCall(VecCopy(diagonal, shifted));
+  PetscCall(VecScale(shifted, 1 + self->shift));
+  PetscCall(MatDiagonalSet(blocks, shifted, INSERT_VALUES));
+  PetscCall(KSPGetPC(self->solver, &pc));
+  PetscCall(PCSetFailedReason(pc, PC_NOERROR));
+  PetscCall(PCSetReusePreconditioner(pc, PETSC_FALSE));
+  PetscCall(KSPSetOperators(self->solver, blocks, blocks));
+  PetscCall(open_parts(pc, blocks));
+  PetscCall(PCSetUp(pc));
+  PetscCall(PCSetUpOnBlocks(pc));
+  PetscCall(PCSetReusePreconditioner(pc, PETSC_TRUE));
+  PetscCall(MatDiagonalSet(blocks, diagonal, INSERT_VALUES));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(VecDestroy(&shifted));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode set_up_incomplete(struct incomplete_factor *self, Mat blocks, int *is_definite)
+{
   KSPConvergedReason reason;
   PetscFunctionBegin;
   if (!self->solver) PetscCall(make_solver(self, blocks));
   if (self->shift <= 0) raise_shift(self);
-  PetscCall(KSPGetPC(self->solver, &pc));
   do {
-    PetscCall(PCSetFailedReason(pc, PC_NOERROR));
-    PetscCall(give_operators(self, blocks));
-    PetscCall(leave_out_empty(pc, blocks));
+    PetscCall(factor_shifted(self, blocks));
     PetscCall(try_factor(self->solver, blocks, &reason));
   } while (reason < 0 && reason != KSP_DIVERGED_INDEFINITE_MAT && raise_shift(self));
   *is_definite = reason > 0;
@@ -123,6 +131,5 @@ PetscErrorCode forget_incomplete(struct incomplete_factor *self)
 {
   PetscFunctionBegin;
   PetscCall(KSPDestroy(&self->solver));
-  PetscCall(MatDestroy(&self->shifted));
   PetscFunctionReturn(0);
 }

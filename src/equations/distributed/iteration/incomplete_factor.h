@@ -6,7 +6,6 @@
 struct incomplete_factor {
   KSP solver;   /* holds the factors */
   double shift; /* the factor is that of the matrix with 1 + shift times its diagonal */
-  Mat shifted;  /* that matrix */
 };
 
 /* Factors with the least shift, from 0.01 on, that leaves a positive definite preconditioner; a

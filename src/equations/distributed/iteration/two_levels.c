@@ -16,13 +16,13 @@ static PetscErrorCode apply_two_levels(PC pc, Vec r, Vec z)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode set_up_two_levels(struct two_levels *self, KSP solver, Mat rows, Mat blocks,
+PetscErrorCode set_up_two_levels(struct two_levels *self, KSP solver, Mat blocks,
                                  int *is_definite)
 {
   PC pc;
   PetscFunctionBegin;
-  PetscCall(set_up_incomplete(&self->fine, blocks, is_definite));
-  if (*is_definite) PetscCall(set_up_coarse(&self->coarse, rows, is_definite));
+  PetscCall(set_up_coarse(&self->coarse, blocks, is_definite));
+  if (*is_definite) PetscCall(set_up_incomplete(&self->fine, blocks, is_definite));
   PetscCall(KSPSetOperators(solver, blocks, blocks));
   PetscCall(KSPGetPC(solver, &pc));
   PetscCall(PCSetType(pc, PCSHELL));

@@ -12,8 +12,8 @@ struct two_levels {
   struct coarse_space coarse;
 };
 
-/* Gives a solver the preconditioner of a matrix, by rows and in blocks. */
-PetscErrorCode set_up_two_levels(struct two_levels *self, KSP solver, Mat rows, Mat blocks,
+/* Gives a solver a matrix in blocks, and its preconditioner. */
+PetscErrorCode set_up_two_levels(struct two_levels *self, KSP solver, Mat blocks,
                                  int *is_definite);
 
 PetscErrorCode forget_two_levels(struct two_levels *self);
