@@ -110,7 +110,8 @@ def test_iterations_do_not_grow_with_the_model(on_ranks):
     77 and 64 iterations for the weight, 18 and 23 in motion; 30 and 59 in motion by the incomplete
     factor alone. The factor of 1.5 is the aim from 1e5 to 1e6 unknowns (docs/large_models.md).
 
-    Memory of the larger rank: 178 MB, and 272 where PETSc sorts all entries of the matrix.
+    What the second rank takes for each unknown that the larger model has more: 1.8 kB, and 2.9 kB
+    where PETSc sorted all entries of the matrix. The bound lies a fifth above.
     """
     runs = []
     for factor in (2, 4):
@@ -119,7 +120,8 @@ def test_iterations_do_not_grow_with_the_model(on_ranks):
         runs.append(on_ranks(2)(deck, "--solver", "ITERATIVE", files=files))
     for small, large in zip(*map(iterations_of, runs), strict=True):
         assert large <= 1.5 * small
-    assert runs[1].json["ledger"]["ranks"]["peak_memory_mb"]["most"] <= 220.0
+    small, large = (run.json["ledger"]["ranks"]["peak_memory_mb"]["least"] for run in runs)
+    assert 1048.576 * (large - small) / (61800 - 7956) <= 2.15
 
 
 def test_conjugate_gradients_give_the_same_bits_in_each_run(on_ranks):
