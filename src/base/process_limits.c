@@ -186,17 +186,41 @@ static long long left_by_group(const char *limit, const char *used)
 
 static long long smaller(long long a, long long b) { return a < 0 || (b >= 0 && b < a) ? b : a; }
 
+/* Bytes that the machine, or a control group, leaves for all processes; -1: not known. */
+static long long left_on_machine(void)
+{
+  long long free_kb = number_in("/proc/meminfo", "MemAvailable:");
+  long long swap_kb = number_in("/proc/meminfo", "SwapFree:");
+  long long most = free_kb < 0 ? -1 : 1024 * (free_kb + (swap_kb > 0 ? swap_kb : 0));
+  most = smaller(most, left_by_group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"));
+  return smaller(most, left_by_group("/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                                     "/sys/fs/cgroup/memory/memory.usage_in_bytes"));
+}
+
+/* Bytes that a limit of the process leaves; -1 without a limit. */
+static long long left_by_limit(int limit, const char *used)
+{
+  struct rlimit now;
+  long long kb = number_in("/proc/self/status", used);
+  if (kb < 0 || getrlimit(limit, &now) != 0 || now.rlim_cur == RLIM_INFINITY) return -1;
+  return (long long)now.rlim_cur > 1024 * kb ? (long long)now.rlim_cur - 1024 * kb : 0;
+}
+
+/* Bytes that the process may still take where `sharers` processes share the machine; -1: not known. */
+long long keyway_free_memory(int sharers)
+{
+  long long most = left_on_machine();
+  if (most > 0) most /= sharers;
+  most = smaller(most, left_by_limit(RLIMIT_DATA, "VmData:"));
+  return smaller(most, left_by_limit(RLIMIT_AS, "VmSize:"));
+}
+
 /* Memory beyond what is there is refused when it is asked for. Without a limit the kernel promises
  * it and ends the process when it is used. A sanitizer reserves terabytes that it never uses. */
 static void limit_memory(void)
 {
   struct rlimit now;
-  long long free_kb = number_in("/proc/meminfo", "MemAvailable:");
-  long long swap_kb = number_in("/proc/meminfo", "SwapFree:");
-  long long most = free_kb < 0 ? -1 : 1024 * (free_kb + (swap_kb > 0 ? swap_kb : 0));
-  most = smaller(most, left_by_group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"));
-  most = smaller(most, left_by_group("/sys/fs/cgroup/memory/memory.limit_in_bytes",
-                                     "/sys/fs/cgroup/memory/memory.usage_in_bytes"));
+  long long most = left_on_machine();
 #ifdef __SANITIZE_ADDRESS__
   most = -1;
 #endif

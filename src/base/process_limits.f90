@@ -1,10 +1,12 @@
 !> Limits of the process: memory, the standard output, and files that are devices or pipes.
 module process_limits
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long_long, c_null_char, c_size_t
+  use kinds, only: rk
   use errors, only: error_type, raise, system_failed
   implicit none
   private
   public :: prepare_process, try_memory, end_trial, note_part, print_text, why_no_file
+  public :: free_memory
 
   interface
     !> Opens standard files that the caller has closed; must be the first call of the program.
@@ -42,6 +44,13 @@ module process_limits
       integer(c_int) :: kind
     end function keyway_kind_of_file
 
+    function keyway_free_memory(sharers) result(bytes) bind(c)
+      import :: c_int, c_long_long
+      implicit none
+      integer(c_int), value :: sharers
+      integer(c_long_long) :: bytes
+    end function keyway_free_memory
+
     function keyway_write_output(text, length) result(is_good) bind(c)
       import :: c_char, c_int, c_size_t
       implicit none
@@ -55,6 +64,15 @@ module process_limits
   integer(c_int), parameter :: folder = 2, device = 3 !< kinds of files, process_limits.c
 
 contains
+
+  !> Memory that this process may still take [MB]; huge where the system does not say.
+  real(rk) function free_memory(sharers) result(megabytes)
+    integer, intent(in) :: sharers !< processes that share the machine, with this one
+    integer(c_long_long) :: bytes
+    bytes = keyway_free_memory(int(sharers, c_int))
+    megabytes = huge(1.0_rk)
+    if (bytes >= 0) megabytes = real(bytes, rk)/2.0_rk**20
+  end function free_memory
 
   !> Names the part that is at work, for the message on missing memory. The program ends here if a
   !> part begins without some memory to spare.

@@ -15,17 +15,24 @@ module solver_petsc
                              is_slow, memory_of_petsc, plan_petsc, rows_of_petsc_patch, &
                              shift_of_petsc, solve_petsc, solve_petsc_patch, start_petsc, &
                              sum_petsc, take_petsc_patch
-  use ranks, only: gather_rows, of_all_ranks, share_error, this_rank
-  use unknown_layout, only: choose_solver, compressed_solver, direct_solver, num_rows, own_rows, &
-                            row_layout
+  use process_limits, only: free_memory
+  use ranks, only: gather_rows, is_true_everywhere, num_ranks, num_ranks_here, share_error, &
+                   this_rank
+  use unknown_layout, only: choose_solver, compressed_solver, direct_solver, iterative_solver, &
+                            num_rows, own_rows, row_layout
   use unknown_parts, only: unknown_part
   use write_text, only: as_text
   implicit none
   private
-  public :: petsc_solver, method_text
+  public :: petsc_solver, method_text, settle_solver
 
   !> Most rows for which AUTO takes the factor.
   integer, parameter :: most_direct = 200000
+  !> Memory of all ranks for the factor of an arch dam with rock [MB], and how it grows with the
+  !> rows: MUMPS used 329 MB with 50 169 rows, 1475 MB with 149 760. A rank takes up to 1.2 times
+  !> the mean, and room of 60 % (docs/large_models.md, 4).
+  real(rk), parameter :: factor_memory = 1.2_rk*1.6_rk*1475.0_rk, its_rows = 149760.0_rk
+  real(rk), parameter :: growth_of_memory = 1.37_rk
 
   type, extends(equation_solver) :: petsc_solver
     integer :: num_solves = 0 !< right-hand sides that were solved for
@@ -77,15 +84,29 @@ contains
     end if
   end subroutine analyse
 
+  !> Chooses between factor and iteration by size and memory, where that is left to the program. All
+  !> ranks choose the same.
+  subroutine settle_solver(layout)
+    type(row_layout), intent(inout) :: layout
+    if (layout%solver /= choose_solver) return
+    layout%solver = iterative_solver
+    if (num_rows(layout) > most_direct) return
+    layout%lacks_memory = .not. is_true_everywhere(memory_of_factor(layout) <= &
+                                                   free_memory(num_ranks_here()))
+    if (.not. layout%lacks_memory) layout%solver = direct_solver
+  end subroutine settle_solver
+
+  !> Memory that a factor may need on a rank [MB].
+  real(rk) function memory_of_factor(layout) result(megabytes)
+    type(row_layout), intent(in) :: layout
+    megabytes = factor_memory*(num_rows(layout)/its_rows)**growth_of_memory/num_ranks()
+  end function memory_of_factor
+
   !> The method for a symmetric matrix.
   pure integer(c_int) function method_of(layout) result(method)
-    type(row_layout), intent(in) :: layout
-    logical :: is_direct
-    is_direct = layout%solver == direct_solver
-    if (layout%solver == choose_solver) then
-      is_direct = num_rows(layout) <= most_direct
-    end if
-    method = merge(by_cholesky, by_iteration, is_direct)
+    type(row_layout), intent(in) :: layout !< with a settled solver
+    method = by_iteration
+    if (layout%solver == direct_solver) method = by_cholesky
     if (layout%solver == compressed_solver) method = by_compressed
   end function method_of
 
@@ -102,6 +123,10 @@ contains
       text = 'conjugate gradients with an incomplete factor and the motions of groups of nodes'
     end select
     text = as_text(num_rows(layout))//' equations, '//text
+    if (layout%lacks_memory .and. method_of(layout) == by_iteration) then
+      text = text//' (a factor may need '//as_text(nint(memory_of_factor(layout)))// &
+             ' MB on each rank; less is free)'
+    end if
   end function method_text
 
   !> Sums the matrix over the ranks, and factors it or prepares the iteration.

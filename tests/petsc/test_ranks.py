@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import resource
 
 import numpy as np
 import pytest
@@ -175,6 +176,23 @@ def test_mumps_gets_more_room(keyway, on_ranks, monkeypatch):
     plain, divided = keyway(deck, "-j", "1"), on_ranks(2)(deck, "--solver", "DIRECT")
     size, place = worst_difference(plain, divided)
     assert size <= 1e-8, place
+
+
+def test_auto_takes_no_factor_without_its_memory(on_ranks):
+    """A factor of 61 800 rows may need 421 MB on each of two ranks. Before it, a process takes more
+    than 128 MB; conjugate gradients take some 200 MB in all.
+    """
+    files = refined_dam(4)
+    deck = files.pop("job.inp")
+    least = 500 * 2**20
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (least, before[1]))
+    try:
+        run = on_ranks(2)(deck, files=files)
+    finally:
+        resource.setrlimit(resource.RLIMIT_DATA, before)
+    assert "(a factor may need 421 MB on each rank; less is free)" in run.stderr
+    assert len(iterations_of(run)) == 2
 
 
 def test_too_little_memory_for_mumps(on_ranks, monkeypatch):

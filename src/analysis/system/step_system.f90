@@ -15,6 +15,7 @@ module step_system
   use global_vectors, only: diagonal, dot, multiply
   use matrix_pattern, only: pattern, add_thin, drop_zeros
   use matrix_rows, only: lay_out_rows
+  use solver_petsc, only: settle_solver
   use pattern_builder, only: list_cells, build_pattern
   use assemble_elements, only: assemble_stiffness, assemble_mass, assemble_origins
   use guest_list, only: add_guest_matrices, guests_of_step
@@ -227,6 +228,7 @@ contains
     if (allocated(model%mesh%rank_of_element)) then
       call lay_out_rows(model%mesh, system%numbers, cells, system%matrix)
       system%matrix%layout%solver = model%equation_solver
+      call settle_solver(system%matrix%layout)
     end if
     call build_jump_operator(system%numbers, model%mesh, model%joints, system%operator)
     call place_joints(plan%procedure%has_inertia, system)

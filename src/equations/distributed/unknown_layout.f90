@@ -20,6 +20,7 @@ module unknown_layout
     logical, allocatable :: is_touched(:) !< (num_free) this rank adds to the row
     real(rk), allocatable :: rigid(:, :) !< (own rows, 6) motions of a rigid body [m]
     integer :: solver = choose_solver
+    logical :: lacks_memory = .false. !< for the factor that its size would suggest
   end type row_layout
 
 contains
