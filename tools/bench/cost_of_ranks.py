@@ -16,8 +16,9 @@ from scenes import INCREMENT, dam_of_size, write_deck
 INCREMENTS = 20
 RANKS = (1, 2, 4)
 HEAD = (
-    "| unknowns | program | analyse and factor [s] | solve [s] | whole [s] | memory [MB] |\n"
-    "|---|---|---|---|---|---|"
+    "| unknowns | program | analyse and factor [s] | solve [s] | whole [s] | for an unknown [ms] "
+    "| memory [MB] |\n"
+    "|---|---|---|---|---|---|---|"
 )
 # Reports the largest process of a run, all ranks included; ru_maxrss is in kB.
 MEASURE = (
@@ -39,8 +40,15 @@ class RankRun:
     def row(self) -> str:
         """A line of the table: mean times of both steps together."""
         set_up = sum(self.run.cost(f"{part} structure")[0] for part in ("analyse", "factor"))
-        values = [set_up, self.run.mean("solve structure"), self.run.wall, self.memory]
-        texts = [f"{self.run.unknowns}", self.name, *(f"{v:.3g}" for v in values)]
+        wall, unknowns = self.run.wall, self.run.unknowns
+        values = [
+            set_up,
+            self.run.mean("solve structure"),
+            wall,
+            1e3 * wall / unknowns,
+            self.memory,
+        ]
+        texts = [f"{unknowns}", self.name, *(f"{v:.3g}" for v in values)]
         return "| " + " | ".join(texts) + " |"
 
 
