@@ -55,7 +55,7 @@ contains
       list(n + 1:last) = values(matrix%column_start(j):matrix%column_start(j) + last - n - 1)
       n = last
     end do
-    list(n + 1:) = largest_everywhere(list(:n))
+    list(n + 1:) = largest_everywhere(maxval(list(:n)))
   end subroutine list_entry_values
 
   !> Rows and columns of the blocks of a symmetric matrix. A block may stand there several times.
@@ -105,7 +105,6 @@ contains
     real(rk) :: largest
     integer :: j, k, n, first, last
     list = 0.0_rk
-    largest = 0.0_rk
     n = 0
     first = 0
     do j = 1, matrix%num_free
@@ -118,13 +117,12 @@ contains
           if (block /= last) n = n + 1
           last = block
         end associate
-        largest = max(largest, values(k))
         call put_entry(matrix%layout%row(j), matrix%layout%row(matrix%row(k)), values(k), &
                        list(:, :, n))
       end do
     end do
     call find_empty_rows(matrix%layout, empty)
-    largest = largest_everywhere([largest])
+    largest = largest_everywhere(maxval(list))
     do k = 1, size(empty)
       associate (i => modulo(empty(k), width) + 1)
         list(i, i, n + k) = largest
@@ -180,10 +178,8 @@ contains
   end subroutine find_empty_rows
 
   !> The largest value of all ranks, at least the smallest number that is not zero.
-  real(rk) function largest_everywhere(values) result(largest)
-    real(rk), intent(in) :: values(:) !< of this rank
-    largest = 0.0_rk
-    if (size(values) > 0) largest = maxval(values)
-    largest = max(maxval(of_all_ranks(largest)), tiny(1.0_rk))
+  real(rk) function largest_everywhere(own) result(largest)
+    real(rk), intent(in) :: own !< largest of this rank
+    largest = max(maxval(of_all_ranks(own)), tiny(1.0_rk))
   end function largest_everywhere
 end module entry_lists

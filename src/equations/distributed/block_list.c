@@ -35,6 +35,7 @@ static PetscErrorCode count_blocks(struct block_list *list, int ranks)
     list->sent[r + 1] += list->sent[r];
     list->received[r + 1] += list->received[r];
   }
+  list->num_others = list->received[ranks];
   PetscFunctionReturn(0);
 }
 
@@ -83,7 +84,7 @@ static PetscErrorCode exchange_places(struct block_list *list, int ranks, const 
   int *sent;
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(count, &sent));
-  PetscCall(PetscMalloc1(list->received[ranks], others));
+  PetscCall(PetscMalloc1(list->num_others, others));
   for (int k = 0; k < count; k++) sent[k] = place[list->foreign[k]];
   PetscCall(exchange(list, 1, MPI_INT, sent, *others));
   PetscCall(PetscFree(sent));
@@ -115,7 +116,7 @@ PetscErrorCode exchange_values(const struct block_list *list, const double *valu
   PetscCallMPI(MPI_Comm_size(list->layout->comm, &ranks));
   count = list->sent[ranks];
   PetscCall(PetscMalloc1((size_t)values_of_block * count, &sent));
-  PetscCall(PetscMalloc1((size_t)values_of_block * list->received[ranks], others));
+  PetscCall(PetscMalloc1((size_t)values_of_block * list->num_others, others));
   for (int k = 0; k < count; k++)
     PetscCall(PetscArraycpy(sent + (size_t)values_of_block * k,
                             values + (size_t)values_of_block * list->foreign[k],

@@ -7,7 +7,7 @@
 struct block_list {
   int count, *row, *column; /* blocks that this rank adds, of any rank's rows, from 0 */
   int *foreign;             /* of them those in rows of other ranks, rank by rank */
-  int *others_row, *others_column; /* blocks that others add to own rows, rank by rank */
+  int num_others, *others_row, *others_column; /* that others add to own rows, rank by rank */
   int *sent, *received;     /* (ranks + 1) first block to and from each rank */
   PetscLayout layout;       /* rows of blocks of each rank; NULL before the list is made */
 };

@@ -2,13 +2,6 @@
 
 enum { width = 3, size = width * width };
 
-/* Number of blocks that other ranks add to own rows. */
-static int count_others(const struct block_list *list)
-{
-  int ranks;
-  return MPI_Comm_size(list->layout->comm, &ranks) ? 0 : list->received[ranks];
-}
-
 /* Two numbers for each row of blocks: blocks in columns of its rank, and of other ranks. */
 static PetscErrorCode open_counts(int rows, Vec *counts)
 {
@@ -89,7 +82,7 @@ PetscErrorCode sum_blocks(const struct block_list *list, const double *values, M
     if (is_own_block(list, list->row[k]))
       PetscCall(MatSetValuesBlocked(blocks, 1, &list->row[k], 1, &list->column[k],
                                     values + (size_t)size * k, ADD_VALUES));
-  for (int k = 0; k < count_others(list); k++)
+  for (int k = 0; k < list->num_others; k++)
     PetscCall(MatSetValuesBlocked(blocks, 1, &list->others_row[k], 1, &list->others_column[k],
                                   others + (size_t)size * k, ADD_VALUES));
   PetscCall(PetscFree(others));
